@@ -1,0 +1,80 @@
+//! Which coordinates can be computed with exactly.
+
+use glam::DVec2;
+
+/// The largest magnitude of a coordinate: 2^500, about 3.27e150.
+///
+/// A signed area multiplies two coordinate differences (each below 2^501) and adds two such products: below 2^1004,
+/// which leaves room for the error terms of the exact arithmetic under the f64 maximum of 2^1024.
+pub const COORDINATE_MAX: f64 = f64::from_bits((1023 + 500) << 52);
+
+/// The smallest magnitude of a coordinate that is not zero: 2^-480, about 3.2e-145.
+///
+/// Such a coordinate is a multiple of 2^-532, so every exact product of two differences is a multiple of 2^-1064
+/// and no part of it falls below the smallest f64, 2^-1074.
+pub const COORDINATE_MIN: f64 = f64::from_bits((1023 - 480) << 52);
+
+/// Why a coordinate cannot be used.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum CoordinateFault {
+    /// A NaN or an infinity.
+    #[error("{0} is not a finite number")]
+    NotFinite(f64),
+    /// Above [`COORDINATE_MAX`] in magnitude.
+    #[error("{0:e} is too large for exact products: coordinates must lie within 2^500 (3.27e150) of zero")]
+    TooLarge(f64),
+    /// Below [`COORDINATE_MIN`] in magnitude and not zero.
+    #[error("{0:e} is too small for exact products: coordinates must be 0 or at least 2^-480 (3.2e-145) in magnitude")]
+    TooSmall(f64),
+}
+
+/// Checks both coordinates of `point` and turns a negative zero into a positive one, so that equal points have equal
+/// bits.
+///
+/// # Errors
+///
+/// The first coordinate that is not finite, too large or too small for exact products.
+///
+/// ```
+/// use tautline::geometry::check_point;
+/// assert!(check_point([1.0, -0.0].into()).is_ok());
+/// assert!(check_point([f64::NAN, 0.0].into()).is_err());
+/// assert!(check_point([1e200, 0.0].into()).is_err());
+/// ```
+pub fn check_point(point: DVec2) -> Result<DVec2, CoordinateFault> {
+    Ok(DVec2::new(check(point.x)?, check(point.y)?))
+}
+
+fn check(c: f64) -> Result<f64, CoordinateFault> {
+    if !c.is_finite() {
+        Err(CoordinateFault::NotFinite(c))
+    } else if c.abs() > COORDINATE_MAX {
+        Err(CoordinateFault::TooLarge(c))
+    } else if c != 0.0 && c.abs() < COORDINATE_MIN {
+        Err(CoordinateFault::TooSmall(c))
+    } else {
+        Ok(c + 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_the_powers_of_two_they_say() {
+        assert_eq!(COORDINATE_MAX, 2f64.powi(500));
+        assert_eq!(COORDINATE_MIN, 2f64.powi(-480));
+    }
+
+    #[test]
+    fn the_first_refused_magnitude_lies_just_outside() {
+        let up = |x: f64| f64::from_bits(x.to_bits() + 1);
+        let down = |x: f64| f64::from_bits(x.to_bits() - 1);
+        assert!(check(COORDINATE_MAX).is_ok() && check(-COORDINATE_MIN).is_ok());
+        assert_eq!(check(up(COORDINATE_MAX)), Err(CoordinateFault::TooLarge(up(COORDINATE_MAX))));
+        assert_eq!(check(down(COORDINATE_MIN)), Err(CoordinateFault::TooSmall(down(COORDINATE_MIN))));
+        assert!(check(f64::INFINITY).is_err());
+        assert_eq!(check(-0.0).unwrap().to_bits(), 0);
+    }
+}

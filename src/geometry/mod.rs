@@ -1,0 +1,9 @@
+//! Points and the exact signs that every decision rests on. Knows nothing of ropes.
+
+mod limits;
+mod predicates;
+mod trace_point;
+
+pub use limits::{COORDINATE_MAX, COORDINATE_MIN, CoordinateFault, check_point};
+pub use predicates::{between, forwards, left, orient};
+pub use trace_point::{Hair, TracePoint, Turn, left_of, orient_step};

@@ -1,0 +1,5 @@
+//! skeleton
+pub mod geometry;
+pub mod rope;
+pub mod scene;
+pub mod trace;

@@ -1,0 +1,8 @@
+//! The rope: the stack of contacts, the exact update, and the record of what happened. Knows nothing of files, threads
+//! or GPUs.
+
+mod record;
+mod stack;
+
+pub use record::{Event, EventKind, Status, TraceRecord, replay};
+pub use stack::{Contact, Rope, Side};

@@ -1,0 +1,85 @@
+//! A scene made ready to be evaluated: what never changes while traces come and go.
+
+use std::collections::HashMap;
+
+use glam::DVec2;
+
+use super::{Scene, WallIndex};
+use crate::geometry::{CoordinateFault, between, check_point, orient};
+
+/// Why a rope cannot be tied where the anchor is.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AnchorError {
+    /// The scene marks no anchor and none was given.
+    #[error("no anchor")]
+    Missing,
+    /// Its coordinates cannot be computed with.
+    #[error("the anchor: {0}")]
+    Coordinate(#[from] CoordinateFault),
+    /// It stands in a wall, between its ends.
+    #[error("the anchor ({x}, {y}) lies inside wall {wall}, from ({}, {}) to ({}, {}); it may stand at a wall's end or off the walls", ends[0].x, ends[0].y, ends[1].x, ends[1].y)]
+    InsideWall {
+        /// The anchor's x.
+        x: f64,
+        /// The anchor's y.
+        y: f64,
+        /// Which wall, counted from 0.
+        wall: usize,
+        /// That wall's endpoints.
+        ends: [DVec2; 2],
+    },
+}
+
+/// A scene, its anchor, and the index of its walls.
+pub struct Model {
+    scene: Scene,
+    anchor: DVec2,
+    index: WallIndex,
+    /// Vertex numbers by the bits of their coordinates.
+    numbers: HashMap<[u64; 2], u32>,
+}
+
+impl Model {
+    /// Ties a rope at `anchor`, or where the scene marks its anchor; builds the index in O(n log n).
+    ///
+    /// # Errors
+    ///
+    /// A missing anchor, one that exact arithmetic cannot take, or one inside a wall.
+    pub fn new(scene: Scene, anchor: Option<DVec2>) -> Result<Self, AnchorError> {
+        let anchor = check_point(anchor.or(scene.anchor()).ok_or(AnchorError::Missing)?)?;
+        let index = WallIndex::new(&scene);
+        let numbers = scene.vertices().iter().zip(0..).map(|(p, v)| (p.to_array().map(f64::to_bits), v)).collect();
+        for wall in index.near(anchor, anchor) {
+            let ends @ [u, v] = scene.ends(wall as usize);
+            if orient(u, v, anchor) == 0.0 && between(u, v, anchor) {
+                return Err(AnchorError::InsideWall { x: anchor.x, y: anchor.y, wall: wall as usize, ends });
+            }
+        }
+        Ok(Model { scene, anchor, index, numbers })
+    }
+
+    /// The walls and their ends.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The fixed end `B` of every rope.
+    pub fn anchor(&self) -> DVec2 {
+        self.anchor
+    }
+
+    /// The walls by place.
+    pub fn index(&self) -> &WallIndex {
+        &self.index
+    }
+
+    /// The vertices, that is [`Scene::vertices`].
+    pub fn vertices(&self) -> &[DVec2] {
+        self.scene.vertices()
+    }
+
+    /// The vertex that stands exactly at `p`, if there is one.
+    pub fn vertex_at(&self, p: DVec2) -> Option<u32> {
+        self.numbers.get(&p.to_array().map(f64::to_bits)).copied()
+    }
+}
