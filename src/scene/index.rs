@@ -38,6 +38,6 @@ impl WallIndex {
 
     /// The walls whose bounding box meets the closed box from `low` to `high`, in no particular order.
     pub fn near(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = u32> {
-        self.tree.locate_in_envelope_intersecting(&AABB::from_corners(low.to_array(), high.to_array())).map(|e| e.wall)
+        self.tree.locate_in_envelope_intersecting(AABB::from_corners(low.to_array(), high.to_array())).map(|e| e.wall)
     }
 }
