@@ -1,4 +1,5 @@
 //! skeleton
+pub mod engine;
 pub mod geometry;
 pub mod rope;
 pub mod scene;

@@ -3,6 +3,8 @@
 
 mod record;
 mod stack;
+mod update;
 
 pub use record::{Event, EventKind, Status, TraceRecord, replay};
 pub use stack::{Contact, Rope, Side};
+pub use update::{Leg, Sweep};

@@ -1,6 +1,11 @@
 //! What the user brings as movement: the points through which the free end is dragged.
 
+mod corner;
+mod settle;
+
 use glam::DVec2;
+
+pub use settle::{SettledTrace, Violation, ViolationKind, settle};
 
 /// One trace: its number and its points, in the scene's frame and unit.
 ///

@@ -1,0 +1,68 @@
+//! Engines: ways to turn settled traces into ropes. All share the exact update; they differ in how they find the
+//! vertices to try (but for `note` and `funnel`, which are other methods altogether).
+
+mod reference;
+mod walk;
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use crate::rope::TraceRecord;
+use crate::scene::Model;
+use crate::trace::SettledTrace;
+
+pub use reference::Reference;
+
+/// Turns a batch of independent traces into records.
+pub trait Engine {
+    /// The engine's name, as the command line knows it.
+    fn name(&self) -> &'static str;
+
+    /// Evaluates all `traces` against `model` and returns their records in the same order.
+    ///
+    /// Counts finished steps in `job` as it goes, and ends early when the job is stopped.
+    ///
+    /// # Errors
+    ///
+    /// [`EngineError::Stopped`] when the job was stopped, and whatever can go wrong with the engine's device.
+    fn evaluate(&mut self, model: &Model, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError>;
+}
+
+/// Why an engine gave no result.
+#[derive(Debug, thiserror::Error)]
+pub enum EngineError {
+    /// The job was stopped before it was done.
+    #[error("stopped before all traces were evaluated")]
+    Stopped,
+}
+
+/// A running evaluation as seen from outside: how far it is, and the wish that it stop.
+#[derive(Debug, Default)]
+pub struct Job {
+    steps: AtomicU64,
+    stop: AtomicBool,
+}
+
+impl Job {
+    /// A job that nothing has been done of.
+    pub const fn new() -> Self {
+        Job { steps: AtomicU64::new(0), stop: AtomicBool::new(false) }
+    }
+
+    /// How many trace-steps are done.
+    pub fn steps(&self) -> u64 {
+        self.steps.load(Ordering::Relaxed)
+    }
+
+    /// Asks the engine to end with [`EngineError::Stopped`] as soon as it can.
+    pub fn stop(&self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    pub(crate) fn count(&self, steps: usize) {
+        self.steps.fetch_add(steps as u64, Ordering::Relaxed);
+    }
+
+    pub(crate) fn go_on(&self) -> Result<(), EngineError> {
+        if self.stop.load(Ordering::Relaxed) { Err(EngineError::Stopped) } else { Ok(()) }
+    }
+}

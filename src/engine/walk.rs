@@ -1,0 +1,108 @@
+//! One trace on its way: its rope, how far it has come, and its record so far.
+
+use glam::DVec2;
+
+use crate::rope::{Event, EventKind, Leg, Rope, Side, Status, Sweep, TraceRecord};
+use crate::scene::Model;
+use crate::trace::SettledTrace;
+
+/// The state of one trace's evaluation; made once a slot and reset for each trace.
+pub(super) struct Walk {
+    pub rope: Rope,
+    /// The settled point at which the free end stands, or from which it moves on.
+    pub at: usize,
+    /// How far the leg from point `at` on has been swept.
+    sweep: Sweep,
+    max_length: f64,
+    max_depth: u32,
+    events: Vec<Event>,
+}
+
+impl Walk {
+    pub(super) fn new() -> Self {
+        Walk {
+            rope: Rope::new(DVec2::ZERO),
+            at: 0,
+            sweep: Sweep::Start,
+            max_length: 0.0,
+            max_depth: 0,
+            events: Vec::new(),
+        }
+    }
+
+    /// Stands at the start of `trace`.
+    pub(super) fn start(&mut self, model: &Model, trace: &SettledTrace) {
+        self.rope.reset(model.anchor());
+        self.at = 0;
+        self.sweep = Sweep::Start;
+        self.max_length = 0.0;
+        self.max_depth = 0;
+        self.events.clear();
+        self.look(trace);
+    }
+
+    /// Whether the free end stands at the trace's last point.
+    pub(super) fn is_done(&self, trace: &SettledTrace) -> bool {
+        self.at + 1 >= trace.points().len()
+    }
+
+    /// The next event on the leg from point `at`, applied to the rope; `None`, and on to the next point, when the leg has
+    /// no more.
+    #[inline]
+    pub(super) fn next(
+        &mut self,
+        model: &Model,
+        trace: &SettledTrace,
+        candidates: impl IntoIterator<Item = u32>,
+    ) -> Option<EventKind> {
+        let leg = Leg { a0: trace.point(self.at), a1: trace.point(self.at + 1) };
+        match self.sweep.next(&mut self.rope, &leg, model.vertices(), candidates) {
+            Some((kind, vertex, side)) => {
+                self.note(trace, kind, vertex, side);
+                Some(kind)
+            }
+            None => {
+                self.arrive(trace);
+                None
+            }
+        }
+    }
+
+    /// Writes an event of the leg from point `at` down.
+    pub(super) fn note(&mut self, trace: &SettledTrace, kind: EventKind, vertex: u32, side: Side) {
+        self.events.push(Event { step: trace.step(self.at + 1) as u32, kind, vertex, side });
+    }
+
+    /// Goes on to the next point.
+    pub(super) fn arrive(&mut self, trace: &SettledTrace) {
+        self.at += 1;
+        self.sweep = Sweep::Start;
+        self.look(trace);
+    }
+
+    fn look(&mut self, trace: &SettledTrace) {
+        if trace.ends_step(self.at) {
+            let a = trace.points()[self.at];
+            self.max_length = self.max_length.max(self.rope.length(a));
+            self.max_depth = self.max_depth.max(self.rope.depth(a));
+        }
+    }
+
+    /// The record of the finished trace; takes the events.
+    pub(super) fn record(&mut self, trace: &SettledTrace) -> TraceRecord {
+        let a = trace.points()[self.at];
+        let taut = self.rope.taut(a);
+        TraceRecord {
+            trace: trace.id(),
+            status: if trace.violation().is_some() { Status::Violation } else { Status::Ok },
+            steps: trace.steps() as u64,
+            length: self.rope.length(a),
+            max_length: self.max_length,
+            depth: taut.len() as u32,
+            max_depth: self.max_depth,
+            wraps: taut.iter().map(|c| (c.at, c.side)).collect(),
+            pull: self.rope.pull(a),
+            events: std::mem::take(&mut self.events),
+        }
+    }
+}

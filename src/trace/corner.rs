@@ -1,0 +1,137 @@
+//! The walls that meet where a trace touches: the sectors between them, and the hair by which the trace passes.
+
+use std::cmp::Ordering;
+
+use glam::DVec2;
+
+use crate::geometry::{Hair, Turn, orient};
+use crate::scene::Model;
+
+/// The directions of the walls at one point, as points towards which they go, sorted counter-clockwise.
+#[derive(Debug, Clone)]
+pub(super) struct Corner {
+    at: DVec2,
+    towards: Vec<DVec2>,
+}
+
+/// The way along which a trace comes to a corner or leaves it, as seen from the corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Way {
+    /// A point in that direction.
+    pub towards: DVec2,
+    /// In which sector it lies: the one counter-clockwise of direction `sector`.
+    sector: usize,
+    place: Place,
+}
+
+/// Where in its sector a way lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Place {
+    /// Along the wall at which the sector starts.
+    Start,
+    /// Strictly between the walls.
+    Inside,
+    /// Along the wall at which the sector ends.
+    End,
+}
+
+impl Corner {
+    /// The walls that end at `at` or pass through it; found through the model's index.
+    pub(super) fn new(model: &Model, at: DVec2) -> Corner {
+        let mut towards = Vec::new();
+        for wall in model.index().near(at, at) {
+            let [u, v] = model.scene().ends(wall as usize);
+            if orient(u, v, at) == 0.0 {
+                towards.extend([u, v].into_iter().filter(|&end| end != at));
+            }
+        }
+        towards.sort_by(|&p, &q| by_angle(at, p, q));
+        towards.dedup_by(|p, q| by_angle(at, *p, *q).is_eq());
+        Corner { at, towards }
+    }
+
+    /// Whether a wall goes from here towards `p`.
+    pub(super) fn has_wall_towards(&self, p: DVec2) -> bool {
+        self.towards.binary_search_by(|&d| by_angle(self.at, d, p)).is_ok()
+    }
+
+    /// The way towards `p`. Where a wall goes that way, `side` says on which side of it (as seen from here) the way
+    /// lies.
+    pub(super) fn way(&self, p: DVec2, side: Turn) -> Way {
+        let count = self.towards.len();
+        match self.towards.binary_search_by(|&d| by_angle(self.at, d, p)) {
+            Ok(i) if side == Turn::Left => Way { towards: p, sector: i, place: Place::Start },
+            Ok(i) => Way { towards: p, sector: (i + count - 1) % count, place: Place::End },
+            Err(i) => Way { towards: p, sector: (i + count - 1) % count, place: Place::Inside },
+        }
+    }
+
+    /// Whether one can pass from `from` to `to` without crossing a wall that meets here.
+    pub(super) fn connects(&self, from: Way, to: Way) -> bool {
+        from.sector == to.sector
+    }
+
+    /// Whether passing from `from` to `to` goes all the way round the end of a lone wall, from one of its sides to the
+    /// other.
+    pub(super) fn rounds_tip(&self, from: Way, to: Way) -> bool {
+        self.towards.len() == 1
+            && matches!((from.place, to.place), (Place::Start, Place::End) | (Place::End, Place::Start))
+    }
+
+    /// The hairs by which a trace passes from `from` to `to` a hair off the walls: one, or two round a wall's tip.
+    ///
+    /// If walls lie between, they are passed as if they were not there, on the left.
+    pub(super) fn hairs(&self, from: Way, to: Way) -> Vec<Hair> {
+        let connected = self.connects(from, to);
+        // Whether `to` follows `from` counter-clockwise through the sector.
+        let ccw = connected && self.precedes(from, to);
+        let (first, second) = if ccw { (from, to) } else { (to, from) };
+        let toward = if ccw { Turn::Left } else { Turn::Right };
+        let area = orient(self.at, first.towards, second.towards);
+        let same_way = area == 0.0 && by_angle(self.at, from.towards, to.towards).is_eq();
+        let hair = |away, turn| Hair { witness: from.towards, away, turn };
+        if connected && self.rounds_tip(from, to) {
+            vec![hair(true, toward.reversed()), hair(true, toward)]
+        } else if same_way {
+            // Back the same way, on the same side.
+            vec![hair(false, if from.place == Place::End { Turn::Right } else { Turn::Left })]
+        } else if area > 0.0 {
+            vec![hair(false, toward)]
+        } else {
+            vec![hair(true, toward.reversed())]
+        }
+    }
+
+    /// Whether `p` comes before `q` when their common sector is passed counter-clockwise.
+    fn precedes(&self, p: Way, q: Way) -> bool {
+        match p.place.cmp(&q.place) {
+            Ordering::Equal if p.place == Place::Inside => {
+                let start = self.towards[p.sector];
+                // Angles from the sector's start, in (0, 360) degrees: first those of less than a half turn.
+                let half = |w: DVec2| {
+                    let side = orient(self.at, start, w);
+                    if side > 0.0 { 0 } else { 1 + u8::from(side < 0.0) }
+                };
+                (half(p.towards).cmp(&half(q.towards)))
+                    .then_with(|| 0.0f64.total_cmp(&(orient(self.at, p.towards, q.towards) + 0.0)))
+                    .is_lt()
+            }
+            order => order.is_lt(),
+        }
+    }
+}
+
+/// Compares the directions from `at` to `p` and to `q` by their angle in [0, 360) degrees, exactly.
+fn by_angle(at: DVec2, p: DVec2, q: DVec2) -> Ordering {
+    let lower_half = |p: DVec2| p.y < at.y || (p.y == at.y && p.x < at.x);
+    (lower_half(p).cmp(&lower_half(q))).then_with(|| {
+        let side = orient(at, p, q);
+        if side > 0.0 {
+            Ordering::Less
+        } else if side < 0.0 {
+            Ordering::Greater
+        } else {
+            Ordering::Equal
+        }
+    })
+}

@@ -1,0 +1,93 @@
+//! What several test files need: the golden cases and how ropes are compared with them.
+
+use glam::DVec2;
+use serde::Deserialize;
+use tautline::engine::{Engine, Job};
+use tautline::rope::{TraceRecord, replay};
+use tautline::scene::{Model, Scene};
+use tautline::trace::{SettledTrace, Trace, settle};
+
+/// A golden case: ropes known from another method (triangulation and funnel).
+#[derive(Deserialize)]
+pub(crate) struct Case {
+    pub(crate) name: String,
+    pub(crate) segments: Vec<[[f64; 2]; 2]>,
+    pub(crate) anchor: [f64; 2],
+    pub(crate) traces: Vec<CaseTrace>,
+}
+
+#[derive(Deserialize)]
+pub(crate) struct CaseTrace {
+    pub(crate) points: Vec<[f64; 2]>,
+    pub(crate) ropes: Vec<CaseRope>,
+    #[serde(default)]
+    pub(crate) unjudged: Vec<usize>,
+}
+
+/// The taut rope from `step` on, until the next that is listed.
+#[derive(Deserialize)]
+pub(crate) struct CaseRope {
+    pub(crate) step: usize,
+    pub(crate) wraps: Vec<[f64; 2]>,
+}
+
+/// All golden cases, by name.
+pub(crate) fn cases() -> Vec<Case> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/cases");
+    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    paths.sort();
+    assert_eq!(paths.len(), 16, "golden cases in {folder}");
+    paths.iter().map(|p| serde_json::from_str(&std::fs::read_to_string(p).unwrap()).unwrap()).collect()
+}
+
+impl Case {
+    pub(crate) fn model(&self) -> Model {
+        let walls = self.segments.iter().map(|s| s.map(DVec2::from));
+        Model::new(Scene::new(walls).unwrap(), Some(self.anchor.into())).unwrap()
+    }
+
+    pub(crate) fn settled(&self, model: &Model) -> Vec<SettledTrace> {
+        let traces = self.traces.iter().zip(0..);
+        traces
+            .map(|(t, id)| settle(model, &Trace { id, points: t.points.iter().copied().map(DVec2::from).collect() }))
+            .collect()
+    }
+
+    /// The number of judged steps, and a line for each of them whose rope differs from `records`.
+    pub(crate) fn differences(&self, model: &Model, records: &[TraceRecord]) -> (usize, Vec<String>) {
+        let (mut judged, mut wrong) = (0, vec![]);
+        assert_eq!(records.len(), self.traces.len());
+        for (t, (trace, record)) in self.traces.iter().zip(records).enumerate() {
+            replay(model.anchor(), model.vertices(), trace.points.len(), &record.events, |k, rope| {
+                if trace.unjudged.contains(&k) {
+                    return;
+                }
+                judged += 1;
+                let truth = &trace.ropes[trace.ropes.partition_point(|r| r.step <= k) - 1].wraps;
+                let ours: Vec<[f64; 2]> = rope.taut(trace.points[k].into()).iter().map(|c| c.at.to_array()).collect();
+                if *truth != ours {
+                    wrong.push(format!("{} trace {t} step {k}: {ours:?} instead of {truth:?}", self.name));
+                }
+            });
+        }
+        (judged, wrong)
+    }
+}
+
+/// Evaluates every golden case and compares every judged rope.
+pub(crate) fn compare_with_cases(engine: &mut dyn Engine) {
+    let (mut judged, mut wrong) = (0, vec![]);
+    for case in cases() {
+        let model = case.model();
+        let settled = case.settled(&model);
+        for trace in &settled {
+            assert_eq!(trace.violation(), None, "{}", case.name);
+        }
+        let records = engine.evaluate(&model, &settled, &Job::new()).unwrap();
+        let (n, w) = case.differences(&model, &records);
+        judged += n;
+        wrong.extend(w);
+    }
+    assert!(wrong.is_empty(), "{} of {judged} ropes differ:\n{}", wrong.len(), wrong[..wrong.len().min(20)].join("\n"));
+    assert!(judged > 15_000, "only {judged} ropes were judged");
+}
