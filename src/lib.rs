@@ -1,6 +1,8 @@
 //! skeleton
+pub mod candidates;
 pub mod engine;
 pub mod geometry;
+pub mod gpu;
 pub mod rope;
 pub mod scene;
 pub mod trace;

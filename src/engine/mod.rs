@@ -1,16 +1,27 @@
 //! Engines: ways to turn settled traces into ropes. All share the exact update; they differ in how they find the
 //! vertices to try (but for `note` and `funnel`, which are other methods altogether).
 
+mod batch;
+mod cpu;
+mod gpu;
 mod reference;
 mod walk;
 
+use std::convert::Infallible;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+use crate::gpu::GpuError;
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
+pub use cpu::Cpu;
+pub use gpu::Gpu;
 pub use reference::Reference;
+
+/// The most legs that one query covers unless told otherwise: the exact update tries each candidate at each leg, so
+/// longer windows gain little.
+pub const WINDOW: usize = 256;
 
 /// Turns a batch of independent traces into records.
 pub trait Engine {
@@ -33,6 +44,15 @@ pub enum EngineError {
     /// The job was stopped before it was done.
     #[error("stopped before all traces were evaluated")]
     Stopped,
+    /// The GPU failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+impl From<Infallible> for EngineError {
+    fn from(never: Infallible) -> Self {
+        match never {}
+    }
 }
 
 /// A running evaluation as seen from outside: how far it is, and the wish that it stop.

@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 use serde::Deserialize;
-use tautline::engine::{Engine, Job};
+use tautline::engine::{Engine, Gpu, Job};
+use tautline::gpu::{AdapterChoice, Gpu as Adapter, SOFTWARE_HINT};
 use tautline::rope::{TraceRecord, replay};
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
@@ -75,7 +76,7 @@ impl Case {
 }
 
 /// Evaluates every golden case and compares every judged rope.
-pub(crate) fn compare_with_cases(engine: &mut dyn Engine) {
+pub(crate) fn compare_with_cases(engine: impl Fn(&Model) -> Box<dyn Engine>) {
     let (mut judged, mut wrong) = (0, vec![]);
     for case in cases() {
         let model = case.model();
@@ -83,11 +84,21 @@ pub(crate) fn compare_with_cases(engine: &mut dyn Engine) {
         for trace in &settled {
             assert_eq!(trace.violation(), None, "{}", case.name);
         }
-        let records = engine.evaluate(&model, &settled, &Job::new()).unwrap();
+        let records = engine(&model).evaluate(&model, &settled, &Job::new()).unwrap();
         let (n, w) = case.differences(&model, &records);
         judged += n;
         wrong.extend(w);
     }
     assert!(wrong.is_empty(), "{} of {judged} ropes differ:\n{}", wrong.len(), wrong[..wrong.len().min(20)].join("\n"));
     assert!(judged > 15_000, "only {judged} ropes were judged");
+}
+
+/// The software adapter. A machine without one fails: the GPU engine is never left untested.
+pub(crate) fn software() -> Adapter {
+    Adapter::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}\n\n{SOFTWARE_HINT}"))
+}
+
+/// The `gpu` engine on the software adapter.
+pub(crate) fn gpu(model: &Model) -> Gpu {
+    Gpu::new(software(), model).unwrap()
 }

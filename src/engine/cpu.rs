@@ -1,0 +1,47 @@
+//! The batch pipeline for machines without a GPU: the candidate pass on threads.
+
+use super::{Engine, EngineError, Job, WINDOW, batch};
+use crate::candidates::{CpuPass, Frame};
+use crate::rope::TraceRecord;
+use crate::scene::Model;
+use crate::trace::SettledTrace;
+
+/// How many traces share a round: enough to keep all cores busy between the round's barriers.
+const SLOTS: usize = 4096;
+
+/// Evaluates traces on all cores, for one model.
+pub struct Cpu {
+    pass: CpuPass,
+    frame: Frame,
+    window: usize,
+}
+
+impl Cpu {
+    /// An engine for `model`.
+    pub fn new(model: &Model) -> Self {
+        Self::with_slots(model, SLOTS)
+    }
+
+    /// An engine that evaluates at most `slots` traces at a time, at least 1.
+    pub fn with_slots(model: &Model, slots: usize) -> Self {
+        let frame = Frame::new(model);
+        Cpu { pass: CpuPass::new(model, &frame, slots.max(1)), frame, window: WINDOW }
+    }
+
+    /// The same engine with windows of at most `legs` legs, at least 1.
+    #[must_use]
+    pub fn window(mut self, legs: usize) -> Self {
+        self.window = legs.max(1);
+        self
+    }
+}
+
+impl Engine for Cpu {
+    fn name(&self) -> &'static str {
+        "cpu"
+    }
+
+    fn evaluate(&mut self, model: &Model, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        batch::evaluate(&mut self.pass, &self.frame, self.window, model, traces, job)
+    }
+}

@@ -1,0 +1,219 @@
+//! The candidate pass on the GPU: `shaders/sweep.wgsl`, its buffers and its round trip.
+
+use std::sync::mpsc;
+use std::time::Duration;
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::{BufferUsages, PollType};
+
+use super::{Gpu, GpuError};
+use crate::candidates::{CandidatePass, Found, Frame, Query};
+use crate::scene::Model;
+
+/// The shader's source.
+pub const SWEEP_WGSL: &str = include_str!("../../shaders/sweep.wgsl");
+
+/// The size of the shader's `Chunk`: 64 KiB, which every adapter that meets WebGPU's default limits can bind.
+pub(super) const CHUNK_BYTES: u64 = 1 << 16;
+/// How many vertices a chunk holds: what is left of it after its header, at 8 bytes each.
+const CHUNK_VERTICES: usize = (CHUNK_BYTES as usize - size_of::<ChunkHeader>()) / 8;
+
+/// The workgroup's size in the shader.
+const WORKGROUP: u32 = 64;
+
+/// How long a round may take before the device is given up. A round of the largest size over a million vertices takes
+/// seconds on the slowest adapter known.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The start of the shader's `Chunk`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct ChunkHeader {
+    first: u32,
+    count: u32,
+    unused: [u32; 2],
+}
+
+/// The shader's `Round`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Round {
+    queries: u32,
+    unused: [u32; 3],
+}
+
+/// Runs queries on a GPU. All buffers are made once.
+pub struct GpuPass {
+    gpu: Gpu,
+    pipeline: wgpu::ComputePipeline,
+    bindings: wgpu::BindGroup,
+    round: wgpu::Buffer,
+    queries: wgpu::Buffer,
+    found: wgpu::Buffer,
+    readback: wgpu::Buffer,
+    chunks: u32,
+    capacity: usize,
+}
+
+impl GpuPass {
+    /// A pass over the model's vertices that takes `capacity` queries at once.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of, be it the shader or the memory.
+    pub fn new(gpu: Gpu, model: &Model, frame: &Frame, capacity: usize) -> Result<Self, GpuError> {
+        Self::with_shader(gpu, model, frame, capacity, SWEEP_WGSL)
+    }
+
+    /// The same with another shader in the place of `sweep.wgsl`: what tests use to see that they can fail.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn with_shader(gpu: Gpu, model: &Model, frame: &Frame, capacity: usize, wgsl: &str) -> Result<Self, GpuError> {
+        let device = &gpu.device;
+        let limits = device.limits();
+        // What one storage binding and one dispatch can take bounds the round.
+        let capacity = capacity
+            .min(limits.max_storage_buffer_binding_size as usize / size_of::<Found>())
+            .min(limits.max_compute_workgroups_per_dimension as usize * WORKGROUP as usize);
+        let buffer = |label, size: usize, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: size as u64,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let chunks = chunked(&frame.vertices(model));
+        let vertices = buffer("chunks", chunks.len(), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        gpu.queue.write_buffer(&vertices, 0, &chunks);
+        let round = buffer("round", size_of::<Round>(), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let queries = buffer("queries", capacity * size_of::<Query>(), BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let found_bytes = capacity * size_of::<Found>();
+        let found = buffer("found", found_bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let readback = buffer("readback", found_bytes, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("sweep"),
+            entries: &[
+                binding(0, wgpu::BufferBindingType::Uniform, false),
+                binding(1, wgpu::BufferBindingType::Uniform, true),
+                binding(2, wgpu::BufferBindingType::Storage { read_only: true }, false),
+                binding(3, wgpu::BufferBindingType::Storage { read_only: false }, false),
+            ],
+        });
+        let chunk = wgpu::BufferBinding { buffer: &vertices, offset: 0, size: wgpu::BufferSize::new(CHUNK_BYTES) };
+        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("sweep"),
+            layout: &layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: round.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Buffer(chunk) },
+                wgpu::BindGroupEntry { binding: 2, resource: queries.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 3, resource: found.as_entire_binding() },
+            ],
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("sweep"),
+            layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("sweep"),
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            })),
+            module: &device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("sweep.wgsl"),
+                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+            }),
+            entry_point: Some("sweep"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        gpu.check()?;
+        let chunks = (chunks.len() as u64 / CHUNK_BYTES) as u32;
+        Ok(GpuPass { gpu, pipeline, bindings, round, queries, found, readback, chunks, capacity })
+    }
+
+    /// The adapter on which it runs.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
+        let wait = PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
+        match self.gpu.device.poll(wait) {
+            Ok(_) => Ok(()),
+            Err(wgpu::PollError::Timeout) => {
+                Err(GpuError::Timeout { adapter: self.gpu.summary().name.clone(), seconds: PATIENCE.as_secs() })
+            }
+            Err(other) => Err(self.gpu.failed(other)),
+        }
+    }
+}
+
+impl CandidatePass for GpuPass {
+    type Error = GpuError;
+
+    fn capacity(&self) -> usize {
+        self.capacity
+    }
+
+    fn run(&mut self, queries: &[Query], found: &mut [Found]) -> Result<(), GpuError> {
+        assert!(queries.len() <= self.capacity && queries.len() == found.len(), "a run takes what it has room for");
+        if queries.is_empty() {
+            return Ok(());
+        }
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        let count = queries.len() as u32;
+        queue.write_buffer(&self.round, 0, bytemuck::bytes_of(&Round { queries: count, unused: [0; 3] }));
+        queue.write_buffer(&self.queries, 0, bytemuck::cast_slice(queries));
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("round") });
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&self.pipeline);
+            for chunk in 0..self.chunks {
+                pass.set_bind_group(0, &self.bindings, &[chunk * CHUNK_BYTES as u32]);
+                pass.dispatch_workgroups(count.div_ceil(WORKGROUP), 1, 1);
+            }
+        }
+        let bytes = size_of_val(found) as u64;
+        encoder.copy_buffer_to_buffer(&self.found, 0, &self.readback, 0, bytes);
+        let (sender, mapped) = mpsc::sync_channel(1);
+        encoder.map_buffer_on_submit(&self.readback, wgpu::MapMode::Read, 0..bytes, move |result| {
+            // The receiver is gone only if waiting failed, which is reported there.
+            let _ = sender.send(result);
+        });
+        let submission = queue.submit([encoder.finish()]);
+        self.wait(submission)?;
+        self.gpu.check()?;
+        mapped.recv().map_err(|e| self.gpu.failed(e))?.map_err(|e| self.gpu.failed(e))?;
+        let view = self.readback.get_mapped_range(0..bytes).map_err(|e| self.gpu.failed(e))?;
+        bytemuck::cast_slice_mut(found).copy_from_slice(&view);
+        drop(view);
+        self.readback.unmap();
+        Ok(())
+    }
+}
+
+fn binding(binding: u32, ty: wgpu::BufferBindingType, has_dynamic_offset: bool) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None },
+        count: None,
+    }
+}
+
+/// The vertices as a row of the shader's `Chunk`s, at least one.
+fn chunked(vertices: &[glam::Vec2]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for (i, chunk) in vertices.chunks(CHUNK_VERTICES).enumerate() {
+        let header = ChunkHeader { first: (i * CHUNK_VERTICES) as u32, count: chunk.len() as u32, unused: [0; 2] };
+        bytes.extend_from_slice(bytemuck::bytes_of(&header));
+        bytes.extend_from_slice(bytemuck::cast_slice(chunk));
+        bytes.resize((i + 1) * CHUNK_BYTES as usize, 0);
+    }
+    // A scene without walls still has one chunk, of no vertices: it starts the lists.
+    bytes.resize(bytes.len().max(CHUNK_BYTES as usize), 0);
+    bytes
+}
