@@ -3,6 +3,7 @@
 
 mod batch;
 mod cpu;
+mod funnel;
 mod gpu;
 mod reference;
 mod walk;
@@ -16,6 +17,7 @@ use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 pub use cpu::Cpu;
+pub use funnel::Funnel;
 pub use gpu::Gpu;
 pub use reference::Reference;
 
@@ -44,6 +46,14 @@ pub enum EngineError {
     /// The job was stopped before it was done.
     #[error("stopped before all traces were evaluated")]
     Stopped,
+    /// The engine cannot take this scene.
+    #[error("the engine {engine} cannot take this scene: {why}")]
+    Unfit {
+        /// Which engine.
+        engine: &'static str,
+        /// What it cannot take.
+        why: String,
+    },
     /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
