@@ -115,7 +115,13 @@ impl Sweep {
         let back = -side.sign();
         match *self {
             Sweep::Start => crosses(x, o, leg).filter(|&dir| dir == back),
-            Sweep::After { dir, .. } => (dir == back && is_past(x, o, leg, dir)).then_some(dir),
+            // After an unwrap the last leg may double back from the pivot along the rope itself (round the end of a wall
+            // along which it lies). The unwrapping ray is then a half turn away, which no leg reaches; but a goal on that
+            // very line would count as past it.
+            Sweep::After { dir, x: pivot, y, .. } => {
+                let doubles_back = || orient(x, pivot, y) == 0.0 && !forwards(x, pivot, y);
+                (dir == back && is_past(x, o, leg, dir) && !doubles_back()).then_some(dir)
+            }
         }
     }
 }
@@ -148,6 +154,22 @@ fn meets_before(o: DVec2, p: DVec2, q: DVec2, dir: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The rope is wound round a wall and lies along it, so its last leg doubles back at the wall's end. Unwrapping the
+    /// other end with the free end exactly on the wall's line must not unwrap both.
+    #[test]
+    fn a_rope_that_doubles_back_is_unwrapped_once() {
+        let p = |x: f64, y: f64| DVec2::new(x, y);
+        let vertices = [p(0.0, 1.0), p(0.0, 0.0)];
+        let mut rope = Rope::new(p(0.013, 0.017));
+        for vertex in [1, 0, 1] {
+            rope.push(vertex, vertices[vertex as usize], Side::Right);
+        }
+        let leg = Leg { a0: p(-3.5, 0.0).into(), a1: p(0.0, -0.5).into() };
+        let mut sweep = Sweep::default();
+        assert_eq!(sweep.next(&mut rope, &leg, &vertices, [0, 1]), Some((EventKind::Unwrap, 1, Side::Right)));
+        assert_eq!(sweep.next(&mut rope, &leg, &vertices, [0, 1]), None);
+    }
 
     #[test]
     fn left_is_half_open_in_both_directions() {

@@ -80,6 +80,7 @@ impl Model {
 
     /// The vertex that stands exactly at `p`, if there is one.
     pub fn vertex_at(&self, p: DVec2) -> Option<u32> {
-        self.numbers.get(&p.to_array().map(f64::to_bits)).copied()
+        // Adding zero turns a negative zero into the positive one that is in the map.
+        self.numbers.get(&(p + DVec2::ZERO).to_array().map(f64::to_bits)).copied()
     }
 }

@@ -66,6 +66,11 @@ impl Corner {
         }
     }
 
+    /// Some way: left along the first wall.
+    pub(super) fn any_way(&self) -> Way {
+        Way { towards: self.towards[0], sector: 0, place: Place::Start }
+    }
+
     /// Whether one can pass from `from` to `to` without crossing a wall that meets here.
     pub(super) fn connects(&self, from: Way, to: Way) -> bool {
         from.sector == to.sector

@@ -277,8 +277,8 @@ impl<'a> Settler<'a> {
             let (from, to) = match (from, to) {
                 (Some(from), Some(to)) => (from, to),
                 (Some(way), None) | (None, Some(way)) => (way, way),
-                // The trace never leaves this point: nothing can tell sides apart, and nothing needs to.
-                (None, None) => continue,
+                // The trace never leaves this point: any side will do.
+                (None, None) => (corner.any_way(), corner.any_way()),
             };
             if !corner.connects(from, to) {
                 let at = stays[i].at;

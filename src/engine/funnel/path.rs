@@ -48,19 +48,19 @@ impl Funnel {
         // The goal closes the funnel; what remains of the side that it narrows leads to it.
         narrow(&mut self.path, &mut self.right, &mut self.left, Point { at: to, contact: None }, 1.0);
         self.path.append(&mut self.right);
-        self.straighten(to);
+        self.straighten();
         &self.taut
     }
 
     /// Writes the corners of the path into `taut`.
-    fn straighten(&mut self, to: DVec2) {
+    fn straighten(&mut self) {
         self.taut.clear();
         let mut points = std::mem::take(&mut self.path);
+        // A last contact on which the free end stands is no contact.
         points.dedup_by(|next, kept| next.at == kept.at);
         for three in points.windows(3) {
             let [prior, here, next] = [three[0].at, three[1].at, three[2].at];
-            if here != to
-                && !(orient(prior, here, next) == 0.0 && forwards(prior, here, next))
+            if !(orient(prior, here, next) == 0.0 && forwards(prior, here, next))
                 && let Some(contact) = three[1].contact
             {
                 self.taut.push(contact);

@@ -1,0 +1,96 @@
+//! Engines against each other on random scenes of every kind, with shrinking.
+
+use std::sync::OnceLock;
+
+use proptest::prelude::*;
+use proptest::test_runner::{TestError, TestRunner};
+use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Reference};
+use tautline::rope::{TraceRecord, replay};
+use tautline::scene::Model;
+use tautline::trace::{SettledTrace, Trace, settle};
+
+use crate::scenes::{KINDS, Kind, recipe};
+use crate::support::software;
+
+fn run(engine: &mut dyn Engine, model: &Model, traces: &[SettledTrace]) -> Vec<TraceRecord> {
+    engine.evaluate(model, traces, &Job::new()).unwrap()
+}
+
+/// The taut ropes of a trace after every step.
+fn ropes(model: &Model, trace: &Trace, record: &TraceRecord) -> Vec<Vec<(u32, &'static str)>> {
+    let mut ropes = vec![];
+    replay(model.anchor(), model.vertices(), trace.points.len(), &record.events, |k, rope| {
+        ropes.push(rope.taut(trace.points[k]).iter().map(|c| (c.vertex, c.side.name())).collect());
+    });
+    ropes
+}
+
+fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Model, &Trace, &SettledTrace)) {
+    let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() });
+    let result = runner.run(&recipe(kind, touching), |recipe| {
+        let model = recipe.model();
+        let trace = recipe.trace(&model, 0);
+        let settled = settle(&model, &trace);
+        prop_assert_eq!(settled.violation(), None);
+        test(&model, &trace, &settled);
+        Ok(())
+    });
+    if let Err(TestError::Fail(why, recipe)) = &result {
+        let model = recipe.model();
+        let walls: Vec<_> = (0..model.scene().walls().len()).map(|w| model.scene().ends(w)).collect();
+        let points = recipe.trace(&model, 0).points;
+        panic!("{kind:?}, touching {touching}: {why}\nanchor {}\nwalls {walls:?}\ntrace {points:?}", model.anchor());
+    }
+    result.unwrap();
+}
+
+fn reference_agrees_with_funnel(model: &Model, trace: &Trace, settled: &SettledTrace) {
+    let batch = std::slice::from_ref(settled);
+    let [ours, truth] = [run(&mut Reference, model, batch), run(&mut Funnel, model, batch)];
+    assert_eq!(ropes(model, trace, &ours[0]), ropes(model, trace, &truth[0]));
+    let report = |r: &TraceRecord| TraceRecord { events: vec![], ..r.clone() };
+    assert_eq!(report(&ours[0]), report(&truth[0]));
+}
+
+#[test]
+fn reference_agrees_with_funnel_after_every_step() {
+    for kind in KINDS {
+        check(kind, false, 1000, reference_agrees_with_funnel);
+    }
+}
+
+#[test]
+fn reference_agrees_with_funnel_where_traces_touch() {
+    for kind in KINDS {
+        check(kind, true, 1000, reference_agrees_with_funnel);
+    }
+}
+
+#[test]
+fn cpu_gives_the_references_events() {
+    for kind in KINDS {
+        for touching in [false, true] {
+            check(kind, touching, 300, |model, _, settled| {
+                let batch = std::slice::from_ref(settled);
+                let truth = run(&mut Reference, model, batch);
+                assert_eq!(run(&mut Cpu::new(model), model, batch), truth);
+                assert_eq!(run(&mut Cpu::new(model).window(1), model, batch), truth);
+            });
+        }
+    }
+}
+
+#[test]
+fn gpu_gives_the_references_events() {
+    static ADAPTER: OnceLock<tautline::gpu::Gpu> = OnceLock::new();
+    let adapter = ADAPTER.get_or_init(software);
+    for kind in KINDS {
+        for touching in [false, true] {
+            check(kind, touching, 40, |model, _, settled| {
+                let batch = std::slice::from_ref(settled);
+                let truth = run(&mut Reference, model, batch);
+                assert_eq!(run(&mut Gpu::new(adapter.clone(), model).unwrap(), model, batch), truth);
+            });
+        }
+    }
+}
