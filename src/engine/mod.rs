@@ -5,6 +5,7 @@ mod batch;
 mod cpu;
 mod funnel;
 mod gpu;
+mod note;
 mod reference;
 mod walk;
 
@@ -19,6 +20,7 @@ use crate::trace::SettledTrace;
 pub use cpu::Cpu;
 pub use funnel::Funnel;
 pub use gpu::Gpu;
+pub use note::Note;
 pub use reference::Reference;
 
 /// The most legs that one query covers unless told otherwise: the exact update tries each candidate at each leg, so

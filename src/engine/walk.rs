@@ -16,6 +16,8 @@ pub(super) struct Walk {
     max_length: f64,
     max_depth: u32,
     events: Vec<Event>,
+    /// The most events that the current leg can still have.
+    leg_room: usize,
 }
 
 impl Walk {
@@ -27,6 +29,7 @@ impl Walk {
             max_length: 0.0,
             max_depth: 0,
             events: Vec::new(),
+            leg_room: 0,
         }
     }
 
@@ -38,6 +41,7 @@ impl Walk {
         self.max_length = 0.0;
         self.max_depth = 0;
         self.events.clear();
+        self.leg_room = model.vertices().len();
         self.look(trace);
     }
 
@@ -58,10 +62,14 @@ impl Walk {
         let leg = Leg { a0: trace.point(self.at), a1: trace.point(self.at + 1) };
         match self.sweep.next(&mut self.rope, &leg, model.vertices(), candidates) {
             Some((kind, vertex, side)) => {
+                // Within a leg the rope unwraps, then wraps, each contact and each vertex once. More is a broken update,
+                // which must not go on for ever.
+                self.leg_room = self.leg_room.checked_sub(1).expect("a leg meets no vertex twice");
                 self.note(trace, kind, vertex, side);
                 Some(kind)
             }
             None => {
+                self.leg_room = model.vertices().len() + self.rope.contacts().len();
                 self.arrive(trace);
                 None
             }

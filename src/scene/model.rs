@@ -78,6 +78,16 @@ impl Model {
         self.scene.vertices()
     }
 
+    /// Whether the segment from `a` to `b` touches no wall at all, its ends included. O(log walls + walls near it).
+    pub fn is_clear(&self, a: DVec2, b: DVec2) -> bool {
+        self.index.near(a.min(b), a.max(b)).all(|wall| {
+            let [u, v] = self.scene.ends(wall as usize);
+            let apart = |p: f64, q: f64| (p > 0.0 && q > 0.0) || (p < 0.0 && q < 0.0);
+            // All on one line: the boxes meet, so the segments do.
+            apart(orient(u, v, a), orient(u, v, b)) || apart(orient(a, b, u), orient(a, b, v))
+        })
+    }
+
     /// The vertex that stands exactly at `p`, if there is one.
     pub fn vertex_at(&self, p: DVec2) -> Option<u32> {
         // Adding zero turns a negative zero into the positive one that is in the map.

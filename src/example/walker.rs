@@ -1,0 +1,60 @@
+//! Random walks that respect the walls.
+
+use glam::DVec2;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+
+use crate::scene::Model;
+use crate::trace::Trace;
+
+/// By how much the heading turns at most in one step, in radians.
+const TURN: f64 = 0.4;
+
+/// Persistent random walks from the anchor: the heading turns by a uniform angle within 0.4 rad a step, and a step is 0.8
+/// `step` along it plus a uniform offset within 0.2 `step` in x and y. A step that would touch a wall or leave the
+/// scene's bounding box is drawn again with a wider turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Walker {
+    /// The length of a step, about, in the scene's unit.
+    pub step: f64,
+    /// How many steps a trace has.
+    pub steps: usize,
+    /// The seed: trace i of a seed is the same whatever else is walked.
+    pub seed: u64,
+}
+
+/// Traces 0 to `count` - 1 of `walker`, on all cores.
+///
+/// A walker that finds no way on stays where it is for that step.
+pub fn walks(model: &Model, walker: Walker, count: u64) -> Vec<Trace> {
+    let vertices = model.vertices().iter();
+    let bounds = vertices.fold((model.anchor(), model.anchor()), |(l, h), &p| (l.min(p), h.max(p)));
+    (0..count).into_par_iter().map(|id| walk(model, bounds, walker, id)).collect()
+}
+
+fn walk(model: &Model, (low, high): (DVec2, DVec2), walker: Walker, id: u64) -> Trace {
+    let mut rng = ChaCha8Rng::seed_from_u64(walker.seed);
+    rng.set_stream(id);
+    let mut uniform = |size: f64| (2.0 * ((rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64) - 1.0) * size;
+    let mut here = model.anchor();
+    let mut heading = uniform(std::f64::consts::PI);
+    let mut points = Vec::with_capacity(walker.steps + 1);
+    points.push(here);
+    for _ in 0..walker.steps {
+        let mut widest = TURN;
+        for _ in 0..32 {
+            let turned = heading + uniform(widest);
+            let offset = DVec2::new(uniform(0.2), uniform(0.2));
+            let next = here + walker.step * (0.8 * DVec2::from_angle(turned) + offset);
+            let inside = next.cmpge(low).all() && next.cmple(high).all();
+            if inside && model.is_clear(here, next) {
+                (here, heading) = (next, turned);
+                break;
+            }
+            widest = (widest * 1.5).min(std::f64::consts::PI);
+        }
+        points.push(here);
+    }
+    Trace { id, points }
+}
