@@ -1,5 +1,8 @@
 //! skeleton
 pub mod geometry;
+mod read_error;
 pub mod rope;
 pub mod scene;
 pub mod trace;
+
+pub use read_error::{Place, ReadError};
