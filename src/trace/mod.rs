@@ -1,6 +1,13 @@
 //! What the user brings as movement: the points through which the free end is dragged.
 
+mod caught;
+mod csv_file;
+mod parquet_file;
+mod read;
+
 use glam::DVec2;
+
+pub use read::read_traces;
 
 /// One trace: its number and its points, in the scene's frame and unit.
 ///
