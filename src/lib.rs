@@ -1,5 +1,6 @@
 //! skeleton
 pub mod geometry;
+pub mod output;
 mod read_error;
 pub mod rope;
 pub mod scene;
