@@ -5,7 +5,8 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use super::tables::{EventColumns, Table};
+use super::columns::EventColumns;
+use super::tables::Table;
 use super::{Format, WholeFile, WriteError, text};
 use crate::rope::TraceRecord;
 

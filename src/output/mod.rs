@@ -4,6 +4,7 @@
 //! `.jsonl`, `.csv` or `.parquet`. All formats hold the same values and give back the same f64. The bytes depend on the
 //! records alone.
 
+mod columns;
 mod events;
 mod results;
 mod tables;

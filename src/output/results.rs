@@ -3,7 +3,8 @@
 use std::io::Write;
 use std::path::Path;
 
-use super::tables::{ResultColumns, Table};
+use super::columns::ResultColumns;
+use super::tables::Table;
 use super::{Format, WholeFile, WriteError, text};
 use crate::rope::TraceRecord;
 

@@ -3,12 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use arrow_array::builder::{
-    ArrayBuilder, Float64Builder, ListBuilder, StringBuilder, StructBuilder, UInt32Builder, UInt64Builder,
-};
 use arrow_array::{ArrayRef, RecordBatch};
-use arrow_schema::{ArrowError, DataType, Field, Fields, Schema, SchemaRef};
-use glam::DVec2;
+use arrow_schema::{Field, Schema, SchemaRef};
 use parquet::arrow::ArrowWriter;
 use parquet::arrow::arrow_writer::ArrowWriterOptions;
 use parquet::basic::Compression;
@@ -16,7 +12,6 @@ use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 
 use super::{WholeFile, WriteError};
-use crate::rope::{Event, TraceRecord};
 
 /// Rows, or wraps in rows, after which a batch is written as a row group: the bound on memory.
 const BATCH: usize = 1 << 16;
@@ -54,8 +49,8 @@ impl<C: Columns> Table<C> {
     }
 
     fn flush(&mut self) -> Result<(), WriteError> {
-        let batch = RecordBatch::try_new(self.schema.clone(), self.columns.take())
-            .map_err(|e: ArrowError| error(&self.path, e.into()))?;
+        let batch =
+            RecordBatch::try_new(self.schema.clone(), self.columns.take()).map_err(|e| error(&self.path, e.into()))?;
         self.writer.write(&batch).and_then(|()| self.writer.flush()).map_err(|e| error(&self.path, e))
     }
 
@@ -79,167 +74,152 @@ fn error(path: &Path, e: ParquetError) -> WriteError {
     WriteError::io(path, cause)
 }
 
-fn point_fields() -> Fields {
-    Fields::from(vec![Field::new("x", DataType::Float64, false), Field::new("y", DataType::Float64, false)])
-}
+#[cfg(test)]
+mod tests {
+    use std::fs::{self, File};
 
-/// Parquet calls a list's elements so.
-fn element(of: DataType) -> Field {
-    Field::new("element", of, false)
-}
+    use arrow_array::Array;
+    use arrow_array::cast::AsArray;
+    use arrow_array::types::{Float64Type, UInt32Type, UInt64Type};
+    use arrow_schema::DataType;
+    use glam::DVec2;
+    use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
-fn point_builder() -> StructBuilder {
-    StructBuilder::new(point_fields(), vec![Box::new(Float64Builder::new()), Box::new(Float64Builder::new())])
-}
+    use super::*;
+    use crate::output::columns::{EventColumns, ResultColumns};
+    use crate::output::{write_events, write_results};
+    use crate::rope::{Event, EventKind, Side, Status, TraceRecord};
 
-/// Adds a point, or null. The fields of a null point hold zeros, as they may not be null themselves.
-fn push_point(builder: &mut StructBuilder, point: Option<DVec2>) {
-    for (field, value) in point.unwrap_or(DVec2::ZERO).to_array().into_iter().enumerate() {
-        let column: &mut Float64Builder = builder.field_builder(field).expect("both fields are built as f64");
-        column.append_value(value);
-    }
-    builder.append(point.is_some());
-}
-
-pub(super) struct ResultColumns {
-    trace: UInt64Builder,
-    status: StringBuilder,
-    steps: UInt64Builder,
-    length: Float64Builder,
-    max_length: Float64Builder,
-    depth: UInt32Builder,
-    max_depth: UInt32Builder,
-    events: UInt64Builder,
-    wraps: ListBuilder<StructBuilder>,
-    sides: ListBuilder<StringBuilder>,
-    pull: StructBuilder,
-}
-
-impl Default for ResultColumns {
-    fn default() -> Self {
-        ResultColumns {
-            trace: UInt64Builder::new(),
-            status: StringBuilder::new(),
-            steps: UInt64Builder::new(),
-            length: Float64Builder::new(),
-            max_length: Float64Builder::new(),
-            depth: UInt32Builder::new(),
-            max_depth: UInt32Builder::new(),
-            events: UInt64Builder::new(),
-            wraps: ListBuilder::new(point_builder()).with_field(element(DataType::Struct(point_fields()))),
-            sides: ListBuilder::new(StringBuilder::new()).with_field(element(DataType::Utf8)),
-            pull: point_builder(),
+    fn record(trace: u64) -> TraceRecord {
+        let odd = trace % 2 == 1;
+        let side = if odd { Side::Left } else { Side::Right };
+        let wraps = (0..trace % 4).map(|i| (DVec2::new(i as f64 + 0.1, -1e-7), side)).collect();
+        let kind = if odd { EventKind::Wrap } else { EventKind::Unwrap };
+        TraceRecord {
+            trace,
+            status: if odd { Status::Violation } else { Status::Ok },
+            steps: 1 << 40,
+            length: 5e-324,
+            max_length: f64::MAX,
+            depth: (trace % 4) as u32,
+            max_depth: u32::MAX,
+            wraps,
+            pull: odd.then_some(DVec2::new(0.6, -0.8)),
+            events: vec![Event { step: 7, kind, vertex: odd.into(), side }; 2],
         }
     }
-}
 
-impl ResultColumns {
-    pub(super) fn push(&mut self, r: &TraceRecord) {
-        self.trace.append_value(r.trace);
-        self.status.append_value(r.status.name());
-        self.steps.append_value(r.steps);
-        self.length.append_value(r.length);
-        self.max_length.append_value(r.max_length);
-        self.depth.append_value(r.depth);
-        self.max_depth.append_value(r.max_depth);
-        self.events.append_value(r.events.len() as u64);
-        for (at, side) in &r.wraps {
-            push_point(self.wraps.values(), Some(*at));
-            self.sides.values().append_value(side.name());
+    fn read(path: &Path) -> Vec<RecordBatch> {
+        let builder = ParquetRecordBatchReaderBuilder::try_new(File::open(path).unwrap()).unwrap();
+        builder.with_batch_size(usize::MAX >> 1).build().unwrap().map(Result::unwrap).collect()
+    }
+
+    fn in_folder(name: &str, write: impl Fn(&Path)) -> (RecordBatch, Vec<u8>) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        write(&path);
+        let batches = read(&path);
+        assert_eq!(batches.len(), 1);
+        (batches[0].clone(), fs::read(&path).unwrap())
+    }
+
+    #[test]
+    fn results_come_back_across_batches() {
+        let count = BATCH + 10;
+        let records: Vec<_> = (0..count as u64).map(record).collect();
+        let (batch, bytes) = in_folder("r.parquet", |path| write_results(path, &records).unwrap());
+        assert_eq!(batch.num_rows(), count);
+        assert_eq!(
+            batch.schema().fields().iter().map(|f| f.name().as_str()).collect::<Vec<_>>(),
+            [
+                "trace",
+                "status",
+                "steps",
+                "length",
+                "max_length",
+                "depth",
+                "max_depth",
+                "events",
+                "wraps",
+                "sides",
+                "pull"
+            ]
+        );
+        let column = |name: &str| batch.column_by_name(name).unwrap();
+        assert_eq!(
+            column("trace").as_primitive::<UInt64Type>().values().to_vec(),
+            (0..count as u64).collect::<Vec<_>>()
+        );
+        for row in [0, 1, 2, 3, count / 2, count - 1] {
+            let r = &records[row];
+            assert_eq!(column("status").as_string::<i32>().value(row), r.status.name());
+            assert_eq!(column("steps").as_primitive::<UInt64Type>().value(row), r.steps);
+            assert_eq!(column("length").as_primitive::<Float64Type>().value(row), r.length);
+            assert_eq!(column("max_length").as_primitive::<Float64Type>().value(row), r.max_length);
+            assert_eq!(column("depth").as_primitive::<UInt32Type>().value(row), r.depth);
+            assert_eq!(column("max_depth").as_primitive::<UInt32Type>().value(row), r.max_depth);
+            assert_eq!(column("events").as_primitive::<UInt64Type>().value(row), 2);
+            let wraps = column("wraps").as_list::<i32>().value(row);
+            let [x, y] = [0, 1].map(|i| wraps.as_struct().column(i).as_primitive::<Float64Type>().clone());
+            let sides = column("sides").as_list::<i32>().value(row);
+            let sides = sides.as_string::<i32>();
+            let found: Vec<_> = (0..x.len()).map(|i| (DVec2::new(x.value(i), y.value(i)), sides.value(i))).collect();
+            assert_eq!(found, r.wraps.iter().map(|(at, side)| (*at, side.name())).collect::<Vec<_>>());
+            let pull = column("pull").as_struct();
+            let [x, y] = [0, 1].map(|i| pull.column(i).as_primitive::<Float64Type>().value(row));
+            assert_eq!(pull.is_valid(row).then_some(DVec2::new(x, y)), r.pull);
         }
-        self.wraps.append(true);
-        self.sides.append(true);
-        push_point(&mut self.pull, r.pull);
-    }
-}
-
-impl Columns for ResultColumns {
-    fn fields() -> Vec<Field> {
-        vec![
-            Field::new("trace", DataType::UInt64, false),
-            Field::new("status", DataType::Utf8, false),
-            Field::new("steps", DataType::UInt64, false),
-            Field::new("length", DataType::Float64, false),
-            Field::new("max_length", DataType::Float64, false),
-            Field::new("depth", DataType::UInt32, false),
-            Field::new("max_depth", DataType::UInt32, false),
-            Field::new("events", DataType::UInt64, false),
-            Field::new("wraps", DataType::List(Arc::new(element(DataType::Struct(point_fields())))), false),
-            Field::new("sides", DataType::List(Arc::new(element(DataType::Utf8))), false),
-            Field::new("pull", DataType::Struct(point_fields()), true),
-        ]
+        let (_, again) = in_folder("r.parquet", |path| write_results(path, &records).unwrap());
+        assert!(bytes == again, "the bytes depend on more than the records");
     }
 
-    fn len(&self) -> usize {
-        self.trace.len().max(self.wraps.values_ref().len())
+    #[test]
+    fn events_come_back() {
+        let vertices = [DVec2::new(0.1, 0.2), DVec2::new(-3e100, 4.0)];
+        let records: Vec<_> = (0..3).map(record).collect();
+        let (batch, _) = in_folder("e.parquet", |path| write_events(path, &vertices, &records).unwrap());
+        let column = |name: &str| batch.column_by_name(name).unwrap();
+        assert_eq!(column("trace").as_primitive::<UInt64Type>().values().to_vec(), [0, 0, 1, 1, 2, 2]);
+        assert_eq!(column("step").as_primitive::<UInt64Type>().values().to_vec(), [7; 6]);
+        assert_eq!(column("vertex").as_primitive::<UInt32Type>().values().to_vec(), [0, 0, 1, 1, 0, 0]);
+        assert_eq!(column("x").as_primitive::<Float64Type>().values()[1..3], [0.1, -3e100]);
+        assert_eq!(column("y").as_primitive::<Float64Type>().values()[1..3], [0.2, 4.0]);
+        let names =
+            |name| column(name).as_string::<i32>().iter().map(Option::unwrap).skip(1).take(2).collect::<Vec<_>>();
+        assert_eq!((names("kind"), names("side")), (vec!["unwrap", "wrap"], vec!["right", "left"]));
     }
 
-    fn take(&mut self) -> Vec<ArrayRef> {
-        vec![
-            Arc::new(self.trace.finish()),
-            Arc::new(self.status.finish()),
-            Arc::new(self.steps.finish()),
-            Arc::new(self.length.finish()),
-            Arc::new(self.max_length.finish()),
-            Arc::new(self.depth.finish()),
-            Arc::new(self.max_depth.finish()),
-            Arc::new(self.events.finish()),
-            Arc::new(self.wraps.finish()),
-            Arc::new(self.sides.finish()),
-            Arc::new(self.pull.finish()),
-        ]
-    }
-}
-
-#[derive(Default)]
-pub(super) struct EventColumns {
-    trace: UInt64Builder,
-    step: UInt64Builder,
-    kind: StringBuilder,
-    vertex: UInt32Builder,
-    x: Float64Builder,
-    y: Float64Builder,
-    side: StringBuilder,
-}
-
-impl EventColumns {
-    pub(super) fn push(&mut self, trace: u64, e: &Event, at: DVec2) {
-        self.trace.append_value(trace);
-        self.step.append_value(u64::from(e.step));
-        self.kind.append_value(e.kind.name());
-        self.vertex.append_value(e.vertex);
-        self.x.append_value(at.x);
-        self.y.append_value(at.y);
-        self.side.append_value(e.side.name());
-    }
-}
-
-impl Columns for EventColumns {
-    fn fields() -> Vec<Field> {
-        vec![
-            Field::new("trace", DataType::UInt64, false),
-            Field::new("step", DataType::UInt64, false),
-            Field::new("kind", DataType::Utf8, false),
-            Field::new("vertex", DataType::UInt32, false),
-            Field::new("x", DataType::Float64, false),
-            Field::new("y", DataType::Float64, false),
-            Field::new("side", DataType::Utf8, false),
-        ]
+    #[test]
+    fn a_file_without_rows_has_its_columns() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("r.parquet");
+        write_results(&path, &[]).unwrap();
+        let builder = ParquetRecordBatchReaderBuilder::try_new(File::open(&path).unwrap()).unwrap();
+        assert_eq!(builder.schema().fields().len(), 11);
+        assert_eq!(builder.schema().field(0).data_type(), &DataType::UInt64);
     }
 
-    fn len(&self) -> usize {
-        self.trace.len()
-    }
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_reported_and_leaves_the_target() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.parquet");
+        fs::write(&path, "old").unwrap();
+        let onto_full = || WholeFile::onto(&path, File::options().write(true).open("/dev/full").unwrap());
+        let expected = format!("cannot write {}: No space left on device (os error 28)", path.display());
 
-    fn take(&mut self) -> Vec<ArrayRef> {
-        vec![
-            Arc::new(self.trace.finish()),
-            Arc::new(self.step.finish()),
-            Arc::new(self.kind.finish()),
-            Arc::new(self.vertex.finish()),
-            Arc::new(self.x.finish()),
-            Arc::new(self.y.finish()),
-            Arc::new(self.side.finish()),
-        ]
+        let few = Table::<ResultColumns>::new(&path, onto_full()).unwrap();
+        assert_eq!(few.finish().unwrap_err().to_string(), expected);
+
+        let mut many = Table::<EventColumns>::new(&path, onto_full()).unwrap();
+        let event = record(1).events[0];
+        let failed = (0..1_000_000u64).find_map(|i| {
+            many.columns.push(i, &event, DVec2::new(i as f64, 0.0));
+            many.flush_if_full().err()
+        });
+        assert_eq!(failed.unwrap().to_string(), expected);
+        assert!(many.finish().is_err());
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }
