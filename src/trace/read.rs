@@ -28,6 +28,10 @@ pub fn read_traces(path: &Path) -> Result<Vec<Trace>, ReadError> {
         }
     };
     let file = File::open(path).map_err(|cause| ReadError::io(path, cause))?;
+    // A folder opens like a file and fails later, where a decoder would take it for damage.
+    if path.is_dir() {
+        return Err(ReadError::io(path, std::io::ErrorKind::IsADirectory.into()));
+    }
     parse(file, path)
 }
 
@@ -94,5 +98,8 @@ mod tests {
         assert_eq!(e, "t.txt: the extension does not name a format; traces are read from .csv, .parquet");
         let e = read_traces(Path::new("/nowhere/t.csv")).unwrap_err().to_string();
         assert_eq!(e, "cannot read /nowhere/t.csv: No such file or directory (os error 2)");
+        let folder = tempfile::Builder::new().suffix(".parquet").tempdir().unwrap();
+        let e = read_traces(folder.path()).unwrap_err().to_string();
+        assert_eq!(e, format!("cannot read {}: is a directory", folder.path().display()));
     }
 }
