@@ -5,16 +5,14 @@ use glam::DVec2;
 use super::Scene;
 use crate::read_error::{Fault, Place};
 
-/// The largest height and width. The corners of a map this large can still be numbered with 32 bits; the largest maps
-/// of the benchmark are 32 times smaller.
+/// The largest height and width: the corners of a map this large can still be numbered with 32 bits.
 const SIDE_MAX: usize = 1 << 15;
 
 /// Reads a map in time linear in its cells.
 ///
 /// Cell (column, row) is the unit square from (column, row) to (column + 1, row + 1), rows downwards as in the file.
-/// What lies around the map is no cell: its outer edge is no wall. Walls are as long as they can be without passing
-/// another border: at a corner that borders leave in both directions all of them end. Walls come in order: horizontal ones by
-/// row and column, then vertical ones by column and row.
+/// What lies around the map is no cell: its outer edge is no wall. Straight runs of borders are one wall; where four
+/// borders meet, all four end. Horizontal walls come first, by row and column, then vertical ones, by column and row.
 pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     let grid = Grid::parse(text)?;
     let mut walls = Vec::new();
