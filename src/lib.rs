@@ -1,9 +1,41 @@
-//! skeleton
+//! Taut ropes of dragged traces among walls, in bulk and exactly.
+//!
+//! A rope is tied to a fixed anchor and held at its free end. The free end is dragged along a trace through a plane full
+//! of walls. After every step the taut rope is the list of wall ends that it bends round. `tautline` keeps that list for
+//! thousands to millions of independent traces at once: a compute shader finds the few wall ends that a trace can meet,
+//! and the CPU decides exactly what happens.
+//!
+//! Data flows one way: a [`scene`] and its anchor make a [`Model`](scene::Model); a [`trace`] is checked against the model
+//! and settled; an [`engine`] turns settled traces into [`TraceRecord`](rope::TraceRecord)s; [`output`] writes them.
+//!
+//! ```
+//! use tautline::engine::{Engine, Job, Reference};
+//! use tautline::scene::{Model, Scene};
+//! use tautline::trace::{Trace, settle};
+//!
+//! // One wall, the anchor south of it; the free end goes round its eastern end and comes to rest north of it.
+//! let scene = Scene::new([[[-1.0, 0.0].into(), [1.0, 0.0].into()]])?;
+//! let model = Model::new(scene, Some([0.0, -1.0].into()))?;
+//! let points = [[0.0, -0.5], [1.5, -0.5], [1.5, 0.5], [0.0, 0.5]].map(Into::into).to_vec();
+//! let settled = settle(&model, &Trace { id: 0, points });
+//! assert!(settled.violation().is_none());
+//!
+//! let records = Reference.evaluate(&model, &[settled], &Job::new())?;
+//! assert_eq!(records[0].wraps.len(), 1);
+//! assert_eq!(records[0].wraps[0].0, [1.0, 0.0].into());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![forbid(unsafe_code)]
+
 pub mod candidates;
 pub mod engine;
 pub mod example;
 pub mod geometry;
 pub mod gpu;
+pub mod output;
+mod read_error;
 pub mod rope;
 pub mod scene;
 pub mod trace;
+
+pub use read_error::{Place, ReadError};

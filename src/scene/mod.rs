@@ -1,7 +1,10 @@
 //! What the user brings as the plane: walls, their ends, and the anchor.
 
+mod geojson;
 mod index;
 mod model;
+mod movingai;
+mod read;
 
 use std::collections::HashMap;
 
@@ -11,6 +14,7 @@ use crate::geometry::{CoordinateFault, check_point};
 
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};
+pub use read::read_scene;
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.
 ///

@@ -1,10 +1,15 @@
 //! What the user brings as movement: the points through which the free end is dragged.
 
+mod caught;
 mod corner;
+mod csv_file;
+mod parquet_file;
+mod read;
 mod settle;
 
 use glam::DVec2;
 
+pub use read::read_traces;
 pub use settle::{SettledTrace, Violation, ViolationKind, settle};
 
 /// One trace: its number and its points, in the scene's frame and unit.

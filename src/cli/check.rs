@@ -1,0 +1,60 @@
+//! `tautline check`.
+
+use serde_json::json;
+
+use super::failure::Failure;
+use super::input::{OnViolation, SceneArgs, settle_all};
+use super::{interrupt, print, print_json};
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    input: SceneArgs,
+    /// What to do with a trace that crosses a wall
+    #[arg(long, value_enum, default_value = "error")]
+    on_violation: OnViolation,
+    /// Print one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    interrupt::listen()?;
+    let model = args.input.model()?;
+    let scene = model.scene();
+    let settled = match args.input.traces {
+        None if args.input.scene.is_some() => None,
+        _ => Some(settle_all(&model, args.input.read_traces(&model)?, args.on_violation)?),
+    };
+    let anchor = model.anchor();
+    let counts = settled.map(|settled| {
+        let violations = settled.iter().filter(|t| t.violation().is_some()).count();
+        (settled.len(), settled.iter().map(|t| t.steps() as u64).sum::<u64>(), violations)
+    });
+    if args.json {
+        return print_json(&json!({
+            "scene": {
+                "name": args.input.name(), "walls": scene.walls().len(), "vertices": scene.vertices().len(),
+                "dropped": scene.dropped(), "anchor": [anchor.x, anchor.y],
+            },
+            "traces": counts.map(|(traces, steps, violations)| {
+                json!({"traces": traces, "steps": steps, "violations": violations})
+            }),
+        }));
+    }
+    let mut text = format!(
+        "scene   {}: {} walls, {} vertices, anchor ({}, {})\n",
+        args.input.name(),
+        scene.walls().len(),
+        scene.vertices().len(),
+        anchor.x,
+        anchor.y
+    );
+    if scene.dropped() > 0 {
+        text += &format!("        {} walls of zero length were dropped\n", scene.dropped());
+    }
+    if let Some((traces, steps, violations)) = counts {
+        text += &format!("traces  {traces}, {steps} steps, {violations} of them crossing walls\n");
+    }
+    print(&text)
+}

@@ -1,0 +1,146 @@
+//! `tautline eval`.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::anyhow;
+use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Note, Reference};
+use tautline::gpu::{AdapterChoice, Gpu as Adapter, GpuError};
+use tautline::output::{EventWriter, ResultWriter, check_output};
+use tautline::rope::TraceRecord;
+use tautline::scene::Model;
+
+use super::failure::Failure;
+use super::input::{OnViolation, SceneArgs, settle_all};
+use super::interrupt::{self, Writing};
+use super::progress::with_progress;
+use super::summary::Summary;
+use super::{print, print_json};
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    input: SceneArgs,
+    /// Where to write one row a trace: .jsonl, .csv or .parquet
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Where to write every wrap and unwrap: .jsonl, .csv or .parquet
+    #[arg(long, value_name = "FILE")]
+    events: Option<PathBuf>,
+    /// What computes the ropes
+    #[arg(long, value_enum, default_value = "auto")]
+    engine: EngineName,
+    /// Which GPU: part of its name, or `software`; implies `--engine gpu`
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// What to do with a trace that crosses a wall
+    #[arg(long, value_enum, default_value = "error")]
+    on_violation: OnViolation,
+    /// The most steps that one query covers; no result depends on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    window: Option<u32>,
+    /// Print the summary as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum EngineName {
+    /// `gpu` on a real GPU, else `cpu`
+    Auto,
+    /// A compute shader finds candidates for many traces at once, the CPU decides exactly
+    Gpu,
+    /// The same on threads
+    Cpu,
+    /// One trace and one step after the other, every vertex tried: the arbiter
+    Reference,
+    /// Another method: triangulation, crossing word, funnel
+    Funnel,
+    /// The seed note's listing 1, as written: wrong on purpose, for comparison
+    Note,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let outputs = || [&args.out, &args.events].into_iter().flatten();
+    outputs().try_for_each(|path| check_output(path))?;
+    if let (Some(out), Some(events)) = (&args.out, &args.events)
+        && out == events
+    {
+        return Err(Failure::input(anyhow!("--out and --events name the same file, {}", out.display())));
+    }
+    interrupt::listen()?;
+    let start = Instant::now();
+    let model = args.input.model()?;
+    if model.scene().dropped() > 0 {
+        eprintln!("note: {} walls of zero length were dropped", model.scene().dropped());
+    }
+    let traces = args.input.read_traces(&model)?;
+    let settled = settle_all(&model, traces, args.on_violation)?;
+    let (mut engine, on) = engine(args, &model)?;
+    let prepared = start.elapsed();
+
+    let job = Job::new();
+    let steps = settled.iter().map(|t| t.steps() as u64).sum();
+    let start = Instant::now();
+    let records = with_progress(&job, steps, || engine.evaluate(&model, &settled, &job))?;
+    let evaluated = start.elapsed();
+    drop(settled);
+    write(args, &model, &records)?;
+
+    let summary = Summary::new(&args.input.name(), &model, (engine.name(), on), &records, prepared, evaluated);
+    if args.json { print_json(&summary.json()) } else { print(&summary.table(args.out.is_none())) }
+}
+
+/// The engine asked for, and in words what it runs on; says on stderr what was chosen where there was a choice.
+fn engine(args: &Args, model: &Model) -> Result<(Box<dyn Engine>, String), Failure> {
+    let choice = match args.adapter.as_deref() {
+        None => AdapterChoice::Best,
+        Some("software") => AdapterChoice::Software,
+        Some(name) => AdapterChoice::Named(name.to_owned()),
+    };
+    let name = match (args.engine, &args.adapter) {
+        (EngineName::Auto, Some(_)) => EngineName::Gpu,
+        (EngineName::Gpu | EngineName::Auto, _) | (_, None) => args.engine,
+        (_, Some(_)) => return Err(Failure::input(anyhow!("--adapter goes with --engine gpu or auto"))),
+    };
+    let window = args.window.map_or(tautline::engine::WINDOW, |w| w as usize);
+    let cpu = || -> (Box<dyn Engine>, String) {
+        (Box::new(Cpu::new(model).window(window)), format!("{} threads", rayon::current_num_threads()))
+    };
+    let gpu = |adapter| -> Result<(Box<dyn Engine>, String), Failure> {
+        let engine = Gpu::new(adapter, model)?.window(window);
+        let on = engine.adapter().to_string();
+        eprintln!("engine: gpu on {on}");
+        Ok((Box::new(engine), on))
+    };
+    let one_thread = "one thread".to_owned();
+    Ok(match name {
+        EngineName::Gpu => gpu(Adapter::open(&choice)?)?,
+        EngineName::Auto => match Adapter::open(&AdapterChoice::Real) {
+            Ok(adapter) => gpu(adapter)?,
+            Err(GpuError::NoAdapter { .. }) => {
+                eprintln!("engine: cpu, since there is no real GPU here (`tautline adapters` lists what there is)");
+                cpu()
+            }
+            Err(other) => return Err(other.into()),
+        },
+        EngineName::Cpu => cpu(),
+        EngineName::Reference => (Box::new(Reference), one_thread),
+        EngineName::Funnel => (Box::new(Funnel), one_thread),
+        EngineName::Note => (Box::new(Note), one_thread),
+    })
+}
+
+/// Writes what was asked for; files appear under their names only when they are whole.
+fn write(args: &Args, model: &Model, records: &[TraceRecord]) -> Result<(), Failure> {
+    let writing = Writing::begin();
+    let mut out = args.out.as_deref().map(ResultWriter::create).transpose()?;
+    let mut events = args.events.as_deref().map(EventWriter::create).transpose()?;
+    for record in records {
+        writing.check()?;
+        out.as_mut().map_or(Ok(()), |w| w.write(record))?;
+        events.as_mut().map_or(Ok(()), |w| w.write(model.vertices(), record))?;
+    }
+    out.map_or(Ok(()), ResultWriter::finish)?;
+    Ok(events.map_or(Ok(()), EventWriter::finish)?)
+}

@@ -1,0 +1,89 @@
+//! What a command fails with: the message and the exit code that belongs to it.
+
+use std::fmt;
+use std::process::ExitCode;
+
+use tautline::ReadError;
+use tautline::engine::EngineError;
+use tautline::gpu::GpuError;
+use tautline::output::WriteError;
+use tautline::scene::AnchorError;
+use tautline::trace::Violation;
+
+/// A failed command.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    code: u8,
+    error: anyhow::Error,
+}
+
+impl Failure {
+    /// Something broke that should not have.
+    pub(crate) fn internal(error: anyhow::Error) -> Self {
+        Failure { code: 1, error }
+    }
+
+    /// The input or the usage is bad.
+    pub(crate) fn input(error: anyhow::Error) -> Self {
+        Failure { code: 2, error }
+    }
+
+    /// Stopped by Ctrl-C.
+    pub(crate) fn interrupted() -> Self {
+        Failure { code: 130, error: anyhow::anyhow!("stopped; nothing was written") }
+    }
+
+    pub(crate) fn code(&self) -> ExitCode {
+        ExitCode::from(self.code)
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.error)
+    }
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        Failure::input(error.into())
+    }
+}
+
+impl From<AnchorError> for Failure {
+    fn from(error: AnchorError) -> Self {
+        Failure::input(error.into())
+    }
+}
+
+impl From<Violation> for Failure {
+    fn from(error: Violation) -> Self {
+        let hint = "; --on-violation flag marks such traces and goes on";
+        Failure::input(anyhow::anyhow!("{error}{hint}"))
+    }
+}
+
+impl From<GpuError> for Failure {
+    fn from(error: GpuError) -> Self {
+        Failure { code: 3, error: error.into() }
+    }
+}
+
+impl From<EngineError> for Failure {
+    fn from(error: EngineError) -> Self {
+        match error {
+            EngineError::Gpu(error) => error.into(),
+            EngineError::Stopped => Failure::interrupted(),
+            EngineError::Unfit { .. } => Failure::input(error.into()),
+        }
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        match error {
+            WriteError::Io { .. } => Failure::internal(error.into()),
+            WriteError::Extension { .. } | WriteError::Target { .. } => Failure::input(error.into()),
+        }
+    }
+}

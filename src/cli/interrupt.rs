@@ -1,0 +1,41 @@
+//! Ctrl-C: ends the process at once where nothing needs to be cleaned up, and in good order where files are half written.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::failure::Failure;
+
+static WRITING: AtomicBool = AtomicBool::new(false);
+static STOPPED: AtomicBool = AtomicBool::new(false);
+
+/// Listens for Ctrl-C from now on.
+pub(crate) fn listen() -> Result<(), Failure> {
+    let heard = || {
+        STOPPED.store(true, Ordering::SeqCst);
+        if !WRITING.load(Ordering::SeqCst) {
+            eprintln!("\nerror: {}", Failure::interrupted());
+            std::process::exit(130);
+        }
+    };
+    ctrlc::set_handler(heard).map_err(|e| Failure::internal(e.into()))
+}
+
+/// While one of these lives, Ctrl-C waits for [`check`].
+pub(crate) struct Writing;
+
+impl Writing {
+    pub(crate) fn begin() -> Self {
+        WRITING.store(true, Ordering::SeqCst);
+        Writing
+    }
+
+    /// An error once Ctrl-C was pressed, so that half-written files are dropped.
+    pub(crate) fn check(&self) -> Result<(), Failure> {
+        if STOPPED.load(Ordering::SeqCst) { Err(Failure::interrupted()) } else { Ok(()) }
+    }
+}
+
+impl Drop for Writing {
+    fn drop(&mut self) {
+        WRITING.store(false, Ordering::SeqCst);
+    }
+}

@@ -1,0 +1,78 @@
+//! Parsing and printing. Everything that happens in between is the library's.
+
+mod adapters;
+mod check;
+pub(crate) mod environment;
+mod eval;
+mod failure;
+mod input;
+mod interrupt;
+mod progress;
+mod summary;
+
+use std::io::Write;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// Taut ropes of dragged traces among walls, in bulk and exactly, on the GPU.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    max_term_width = 110,
+    after_help = "Exit codes: 0 done; 1 internal error; 2 bad input or usage; \
+    3 no such or lost GPU; 130 stopped by Ctrl-C."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Evaluate the ropes of given traces in a scene; without any, those of the built-in example
+    Eval(eval::Args),
+    /// Check a scene, and traces in it, without evaluating ropes
+    Check(check::Args),
+    /// List the GPUs that this machine offers
+    Adapters(adapters::Args),
+}
+
+/// Runs the command line and returns the process's exit code.
+pub(crate) fn run() -> ExitCode {
+    // Usage errors end the process with exit code 2 in here, which is what they should.
+    let cli = Cli::parse();
+    // A panic is a bug of this program; its message is printed by then.
+    let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
+        Command::Eval(args) => eval::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Adapters(args) => adapters::run(&args),
+    }));
+    match outcome {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(failure)) => {
+            eprintln!("error: {failure}");
+            failure.code()
+        }
+        Err(_) => {
+            eprintln!("error: this is a bug in tautline; please report it with the input that shows it");
+            ExitCode::from(1)
+        }
+    }
+}
+
+/// Prints to stdout; a reader that has seen enough (`| head`) is no error.
+fn print(text: &str) -> Result<(), Failure> {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::internal(anyhow::anyhow!(e))),
+        _ => Ok(()),
+    }
+}
+
+/// Prints a report as one JSON document.
+fn print_json(report: &serde_json::Value) -> Result<(), Failure> {
+    print(&format!("{report:#}\n"))
+}

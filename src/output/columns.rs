@@ -1,0 +1,180 @@
+//! The columns of results and events in memory, until they go to a [`Table`](super::tables::Table).
+
+use std::sync::Arc;
+
+use arrow_array::ArrayRef;
+use arrow_array::builder::{
+    ArrayBuilder, Float64Builder, ListBuilder, StringBuilder, StructBuilder, UInt32Builder, UInt64Builder,
+};
+use arrow_schema::{DataType, Field, Fields};
+use glam::DVec2;
+
+use super::tables::Columns;
+use crate::rope::{Event, TraceRecord};
+
+fn point_fields() -> Fields {
+    Fields::from(vec![Field::new("x", DataType::Float64, false), Field::new("y", DataType::Float64, false)])
+}
+
+/// Parquet calls a list's elements so.
+fn element(of: DataType) -> Field {
+    Field::new("element", of, false)
+}
+
+fn point_builder() -> StructBuilder {
+    StructBuilder::new(point_fields(), vec![Box::new(Float64Builder::new()), Box::new(Float64Builder::new())])
+}
+
+/// Adds a point, or null. The fields of a null point hold zeros, as they may not be null themselves.
+fn push_point(builder: &mut StructBuilder, point: Option<DVec2>) {
+    for (field, value) in point.unwrap_or(DVec2::ZERO).to_array().into_iter().enumerate() {
+        let column: &mut Float64Builder = builder.field_builder(field).expect("both fields are built as f64");
+        column.append_value(value);
+    }
+    builder.append(point.is_some());
+}
+
+/// One row a trace.
+pub(super) struct ResultColumns {
+    trace: UInt64Builder,
+    status: StringBuilder,
+    steps: UInt64Builder,
+    length: Float64Builder,
+    max_length: Float64Builder,
+    depth: UInt32Builder,
+    max_depth: UInt32Builder,
+    events: UInt64Builder,
+    wraps: ListBuilder<StructBuilder>,
+    sides: ListBuilder<StringBuilder>,
+    pull: StructBuilder,
+}
+
+impl Default for ResultColumns {
+    fn default() -> Self {
+        ResultColumns {
+            trace: UInt64Builder::new(),
+            status: StringBuilder::new(),
+            steps: UInt64Builder::new(),
+            length: Float64Builder::new(),
+            max_length: Float64Builder::new(),
+            depth: UInt32Builder::new(),
+            max_depth: UInt32Builder::new(),
+            events: UInt64Builder::new(),
+            wraps: ListBuilder::new(point_builder()).with_field(element(DataType::Struct(point_fields()))),
+            sides: ListBuilder::new(StringBuilder::new()).with_field(element(DataType::Utf8)),
+            pull: point_builder(),
+        }
+    }
+}
+
+impl ResultColumns {
+    pub(super) fn push(&mut self, r: &TraceRecord) {
+        self.trace.append_value(r.trace);
+        self.status.append_value(r.status.name());
+        self.steps.append_value(r.steps);
+        self.length.append_value(r.length);
+        self.max_length.append_value(r.max_length);
+        self.depth.append_value(r.depth);
+        self.max_depth.append_value(r.max_depth);
+        self.events.append_value(r.events.len() as u64);
+        for (at, side) in &r.wraps {
+            push_point(self.wraps.values(), Some(*at));
+            self.sides.values().append_value(side.name());
+        }
+        self.wraps.append(true);
+        self.sides.append(true);
+        push_point(&mut self.pull, r.pull);
+    }
+}
+
+impl Columns for ResultColumns {
+    fn fields() -> Vec<Field> {
+        vec![
+            Field::new("trace", DataType::UInt64, false),
+            Field::new("status", DataType::Utf8, false),
+            Field::new("steps", DataType::UInt64, false),
+            Field::new("length", DataType::Float64, false),
+            Field::new("max_length", DataType::Float64, false),
+            Field::new("depth", DataType::UInt32, false),
+            Field::new("max_depth", DataType::UInt32, false),
+            Field::new("events", DataType::UInt64, false),
+            Field::new("wraps", DataType::List(Arc::new(element(DataType::Struct(point_fields())))), false),
+            Field::new("sides", DataType::List(Arc::new(element(DataType::Utf8))), false),
+            Field::new("pull", DataType::Struct(point_fields()), true),
+        ]
+    }
+
+    fn len(&self) -> usize {
+        self.trace.len().max(self.wraps.values_ref().len())
+    }
+
+    fn take(&mut self) -> Vec<ArrayRef> {
+        vec![
+            Arc::new(self.trace.finish()),
+            Arc::new(self.status.finish()),
+            Arc::new(self.steps.finish()),
+            Arc::new(self.length.finish()),
+            Arc::new(self.max_length.finish()),
+            Arc::new(self.depth.finish()),
+            Arc::new(self.max_depth.finish()),
+            Arc::new(self.events.finish()),
+            Arc::new(self.wraps.finish()),
+            Arc::new(self.sides.finish()),
+            Arc::new(self.pull.finish()),
+        ]
+    }
+}
+
+/// One row an event.
+#[derive(Default)]
+pub(super) struct EventColumns {
+    trace: UInt64Builder,
+    step: UInt64Builder,
+    kind: StringBuilder,
+    vertex: UInt32Builder,
+    x: Float64Builder,
+    y: Float64Builder,
+    side: StringBuilder,
+}
+
+impl EventColumns {
+    pub(super) fn push(&mut self, trace: u64, e: &Event, at: DVec2) {
+        self.trace.append_value(trace);
+        self.step.append_value(u64::from(e.step));
+        self.kind.append_value(e.kind.name());
+        self.vertex.append_value(e.vertex);
+        self.x.append_value(at.x);
+        self.y.append_value(at.y);
+        self.side.append_value(e.side.name());
+    }
+}
+
+impl Columns for EventColumns {
+    fn fields() -> Vec<Field> {
+        vec![
+            Field::new("trace", DataType::UInt64, false),
+            Field::new("step", DataType::UInt64, false),
+            Field::new("kind", DataType::Utf8, false),
+            Field::new("vertex", DataType::UInt32, false),
+            Field::new("x", DataType::Float64, false),
+            Field::new("y", DataType::Float64, false),
+            Field::new("side", DataType::Utf8, false),
+        ]
+    }
+
+    fn len(&self) -> usize {
+        self.trace.len()
+    }
+
+    fn take(&mut self) -> Vec<ArrayRef> {
+        vec![
+            Arc::new(self.trace.finish()),
+            Arc::new(self.step.finish()),
+            Arc::new(self.kind.finish()),
+            Arc::new(self.vertex.finish()),
+            Arc::new(self.x.finish()),
+            Arc::new(self.y.finish()),
+            Arc::new(self.side.finish()),
+        ]
+    }
+}

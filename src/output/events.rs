@@ -1,0 +1,139 @@
+//! Events: one row a push or pop.
+
+use std::io::Write;
+use std::path::Path;
+
+use glam::DVec2;
+
+use super::columns::EventColumns;
+use super::tables::Table;
+use super::{Format, WholeFile, WriteError, text};
+use crate::rope::TraceRecord;
+
+/// Writes the events of traces to a file that appears when it is finished.
+///
+/// `.jsonl`, `.csv` and `.parquet` have the same columns: `trace`, `step`, `kind` (`wrap` or `unwrap`), `vertex` (the
+/// scene's number of it), `x`, `y` (where it stands), `side` (`left` or `right`). Memory is bounded; it does not grow
+/// with the number of events.
+pub struct EventWriter(Rows);
+
+enum Rows {
+    Jsonl(WholeFile),
+    Csv(WholeFile),
+    Parquet(Box<Table<EventColumns>>),
+}
+
+impl EventWriter {
+    /// Starts the file at `path`, in the format that its extension names.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`check_output`](super::check_output).
+    pub fn create(path: &Path) -> Result<Self, WriteError> {
+        let format = Format::of(path)?;
+        let mut file = WholeFile::create(path)?;
+        Ok(EventWriter(match format {
+            Format::Jsonl => Rows::Jsonl(file),
+            Format::Csv => {
+                writeln!(file, "{}", text::EVENT_HEADER).map_err(|cause| file.error(cause))?;
+                Rows::Csv(file)
+            }
+            Format::Parquet => Rows::Parquet(Box::new(Table::new(path, file)?)),
+        }))
+    }
+
+    /// Adds the events of one trace; `vertices` are the scene's.
+    ///
+    /// # Errors
+    ///
+    /// What the operating system says; the file cannot be finished after that.
+    ///
+    /// # Panics
+    ///
+    /// If an event names a vertex that is not there.
+    pub fn write(&mut self, vertices: &[DVec2], record: &TraceRecord) -> Result<(), WriteError> {
+        for event in &record.events {
+            let at = vertices[event.vertex as usize];
+            match &mut self.0 {
+                Rows::Jsonl(file) => {
+                    text::event_json(file, record.trace, event, at).map_err(|cause| file.error(cause))?;
+                }
+                Rows::Csv(file) => {
+                    text::event_csv(file, record.trace, event, at).map_err(|cause| file.error(cause))?;
+                }
+                Rows::Parquet(table) => {
+                    table.columns.push(record.trace, event, at);
+                    table.flush_if_full()?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    ///
+    /// What the operating system says, or that an earlier write failed.
+    pub fn finish(self) -> Result<(), WriteError> {
+        match self.0 {
+            Rows::Jsonl(file) | Rows::Csv(file) => file.finish(),
+            Rows::Parquet(table) => table.finish(),
+        }
+    }
+}
+
+/// Writes the events of all `records` to `path`, as [`EventWriter`] does; `vertices` are the scene's.
+///
+/// # Errors
+///
+/// Those of [`check_output`](super::check_output), and what the operating system says.
+///
+/// # Panics
+///
+/// If an event names a vertex that is not there.
+pub fn write_events(path: &Path, vertices: &[DVec2], records: &[TraceRecord]) -> Result<(), WriteError> {
+    let mut writer = EventWriter::create(path)?;
+    records.iter().try_for_each(|record| writer.write(vertices, record))?;
+    writer.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rope::{Event, EventKind, Side, Status};
+
+    #[test]
+    fn rows_have_the_documented_form() {
+        let vertices = [DVec2::new(0.1, -3e-7), DVec2::new(1.0, 2.0)];
+        let wrap = Event { step: 12, kind: EventKind::Wrap, vertex: 1, side: Side::Left };
+        let unwrap = Event { step: 40, kind: EventKind::Unwrap, vertex: 0, side: Side::Right };
+        let record = TraceRecord {
+            trace: 3,
+            status: Status::Ok,
+            steps: 40,
+            length: 1.0,
+            max_length: 1.0,
+            depth: 0,
+            max_depth: 0,
+            wraps: Vec::new(),
+            pull: None,
+            events: vec![wrap, unwrap],
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let written = |name: &str| {
+            let path = folder.path().join(name);
+            write_events(&path, &vertices, std::slice::from_ref(&record)).unwrap();
+            std::fs::read_to_string(path).unwrap()
+        };
+        let lines = concat!(
+            r#"{"trace":3,"step":12,"kind":"wrap","vertex":1,"x":1.0,"y":2.0,"side":"left"}"#,
+            "\n",
+            r#"{"trace":3,"step":40,"kind":"unwrap","vertex":0,"x":0.1,"y":-3e-7,"side":"right"}"#,
+            "\n",
+        );
+        assert_eq!(written("e.jsonl"), lines);
+        let rows = "3,12,wrap,1,1.0,2.0,left\n3,40,unwrap,0,0.1,-3e-7,right\n";
+        assert_eq!(written("e.csv"), format!("trace,step,kind,vertex,x,y,side\n{rows}"));
+    }
+}

@@ -1,0 +1,74 @@
+//! What comes out: results and events as files, each whole or not there at all.
+//!
+//! One row a trace ([`ResultWriter`]) or one row an event ([`EventWriter`]), in the format that the extension names:
+//! `.jsonl`, `.csv` or `.parquet`. All formats hold the same values and give back the same f64. The bytes depend on the
+//! records alone.
+
+mod columns;
+mod events;
+mod results;
+mod tables;
+mod text;
+mod whole_file;
+mod write_error;
+
+use std::path::Path;
+
+pub use events::{EventWriter, write_events};
+pub use results::{ResultWriter, write_results};
+pub use whole_file::WholeFile;
+pub use write_error::WriteError;
+
+use crate::read_error::extension;
+
+/// How rows are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Jsonl,
+    Csv,
+    Parquet,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, WriteError> {
+        match extension(path).as_str() {
+            "jsonl" => Ok(Format::Jsonl),
+            "csv" => Ok(Format::Csv),
+            "parquet" => Ok(Format::Parquet),
+            _ => Err(WriteError::Extension { path: path.into() }),
+        }
+    }
+}
+
+/// Whether results or events can be written to `path`, to be asked before a long computation. Leaves nothing behind.
+///
+/// # Errors
+///
+/// An extension that names no format, a folder that does not exist or cannot be written to, and a target that is there
+/// and is no regular file or is read-only.
+pub fn check_output(path: &Path) -> Result<(), WriteError> {
+    Format::of(path)?;
+    WholeFile::create(path).map(drop)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_output_is_checked_without_a_trace() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["a.jsonl", "a.CSV", "a.parquet"] {
+            check_output(&folder.path().join(name)).unwrap();
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        for name in ["a.json", "a", "-"] {
+            let e = check_output(Path::new(name)).unwrap_err().to_string();
+            let rest =
+                "the extension does not name a format; results and events are written as .jsonl, .csv or .parquet";
+            assert_eq!(e, format!("{name}: {rest}"));
+        }
+        let e = check_output(Path::new("/nowhere/at/all.csv")).unwrap_err().to_string();
+        assert_eq!(e, "cannot write /nowhere/at/all.csv: the folder /nowhere/at does not exist");
+    }
+}

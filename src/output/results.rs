@@ -1,0 +1,162 @@
+//! Results: one row a trace.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::columns::ResultColumns;
+use super::tables::Table;
+use super::{Format, WholeFile, WriteError, text};
+use crate::rope::TraceRecord;
+
+/// Writes results one by one to a file that appears when it is finished.
+///
+/// - `.jsonl`: one object a line: `trace`, `status`, `steps`, `length`, `max_length`, `depth`, `max_depth`, `events`
+///   (how many), `wraps` (positions `[x,y]` from the anchor), `sides`, `pull` (`[x,y]` or null).
+/// - `.csv`: the same columns, `wraps` as `1.0 2.0;3.5 -1.25`, `sides` as `left;right`, the pull as `pull_x` and
+///   `pull_y`, both empty for a rope of no length.
+/// - `.parquet`: `wraps` as a list of structs of `x` and `y`, `pull` as such a struct or null. Parquet itself has
+///   structs but no lists of fixed size, so this reads alike in pandas, polars and DuckDB.
+///
+/// Lengths are in the scene's unit. Memory is bounded; it does not grow with the number of results.
+pub struct ResultWriter(Rows);
+
+enum Rows {
+    Jsonl(WholeFile),
+    Csv(WholeFile),
+    Parquet(Box<Table<ResultColumns>>),
+}
+
+impl ResultWriter {
+    /// Starts the file at `path`, in the format that its extension names.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`check_output`](super::check_output).
+    pub fn create(path: &Path) -> Result<Self, WriteError> {
+        let format = Format::of(path)?;
+        let mut file = WholeFile::create(path)?;
+        Ok(ResultWriter(match format {
+            Format::Jsonl => Rows::Jsonl(file),
+            Format::Csv => {
+                writeln!(file, "{}", text::RESULT_HEADER).map_err(|cause| file.error(cause))?;
+                Rows::Csv(file)
+            }
+            Format::Parquet => Rows::Parquet(Box::new(Table::new(path, file)?)),
+        }))
+    }
+
+    /// Adds one result.
+    ///
+    /// # Errors
+    ///
+    /// What the operating system says; the file cannot be finished after that.
+    pub fn write(&mut self, record: &TraceRecord) -> Result<(), WriteError> {
+        match &mut self.0 {
+            Rows::Jsonl(file) => text::result_json(file, record).map_err(|cause| file.error(cause)),
+            Rows::Csv(file) => text::result_csv(file, record).map_err(|cause| file.error(cause)),
+            Rows::Parquet(table) => {
+                table.columns.push(record);
+                table.flush_if_full()
+            }
+        }
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    ///
+    /// What the operating system says, or that an earlier write failed.
+    pub fn finish(self) -> Result<(), WriteError> {
+        match self.0 {
+            Rows::Jsonl(file) | Rows::Csv(file) => file.finish(),
+            Rows::Parquet(table) => table.finish(),
+        }
+    }
+}
+
+/// Writes all `records` to `path`, as [`ResultWriter`] does.
+///
+/// # Errors
+///
+/// Those of [`check_output`](super::check_output), and what the operating system says.
+pub fn write_results(path: &Path, records: &[TraceRecord]) -> Result<(), WriteError> {
+    let mut writer = ResultWriter::create(path)?;
+    records.iter().try_for_each(|record| writer.write(record))?;
+    writer.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rope::{Event, EventKind, Side, Status};
+
+    fn records() -> Vec<TraceRecord> {
+        let event = Event { step: 1, kind: EventKind::Wrap, vertex: 0, side: Side::Left };
+        let full = TraceRecord {
+            trace: 0,
+            status: Status::Ok,
+            steps: 400,
+            length: 12.375,
+            max_length: 14.5,
+            depth: 3,
+            max_depth: 5,
+            wraps: vec![([1.0, 2.0].into(), Side::Left), ([3.5, -1.25].into(), Side::Right)],
+            pull: Some([0.6, 0.8].into()),
+            events: vec![event; 17],
+        };
+        let empty = TraceRecord {
+            trace: u64::MAX,
+            status: Status::Violation,
+            length: 5e-324,
+            max_length: f64::MAX,
+            wraps: Vec::new(),
+            pull: None,
+            events: Vec::new(),
+            ..full
+        };
+        vec![full, empty]
+    }
+
+    fn written(name: &str, records: &[TraceRecord]) -> String {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        write_results(&path, records).unwrap();
+        std::fs::read_to_string(path).unwrap()
+    }
+
+    #[test]
+    fn json_lines_have_the_documented_form() {
+        let full = concat!(
+            r#"{"trace":0,"status":"ok","steps":400,"length":12.375,"max_length":14.5,"depth":3,"max_depth":5,"#,
+            r#""events":17,"wraps":[[1.0,2.0],[3.5,-1.25]],"sides":["left","right"],"pull":[0.6,0.8]}"#,
+        );
+        let empty = concat!(
+            r#"{"trace":18446744073709551615,"status":"violation","steps":400,"length":5e-324,"#,
+            r#""max_length":1.7976931348623157e+308,"depth":3,"max_depth":5,"events":0,"#,
+            r#""wraps":[],"sides":[],"pull":null}"#,
+        );
+        let text = written("r.jsonl", &records());
+        assert_eq!(text, format!("{full}\n{empty}\n"));
+        assert_eq!(written("r.jsonl", &[]), "");
+    }
+
+    #[test]
+    fn csv_has_the_documented_form() {
+        let rows = written("r.csv", &records());
+        let full = "0,ok,400,12.375,14.5,3,5,17,1.0 2.0;3.5 -1.25,left;right,0.6,0.8";
+        let empty = "18446744073709551615,violation,400,5e-324,1.7976931348623157e+308,3,5,0,,,,";
+        assert_eq!(rows, format!("{}\n{full}\n{empty}\n", text::RESULT_HEADER));
+        assert_eq!(written("r.csv", &[]), format!("{}\n", text::RESULT_HEADER));
+    }
+
+    #[test]
+    fn a_writer_that_is_not_finished_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["r.csv", "r.jsonl", "r.parquet"] {
+            let mut writer = ResultWriter::create(&folder.path().join(name)).unwrap();
+            writer.write(&records()[0]).unwrap();
+            drop(writer);
+            assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Rows as text: JSON lines and CSV.
+//!
+//! A number is written with the fewest digits that read back to the same f64, the same in both formats. CSV needs no
+//! quotes: no field holds a comma, a quote or a line end.
+
+use std::io::{self, Write};
+
+use glam::DVec2;
+use serde::{Serialize, Serializer};
+
+use crate::rope::{Event, Side, TraceRecord};
+
+pub(super) const RESULT_HEADER: &str =
+    "trace,status,steps,length,max_length,depth,max_depth,events,wraps,sides,pull_x,pull_y";
+
+pub(super) const EVENT_HEADER: &str = "trace,step,kind,vertex,x,y,side";
+
+/// A result as a JSON object; the fields' order is the keys'.
+#[derive(Serialize)]
+struct ResultLine<'a> {
+    trace: u64,
+    status: &'static str,
+    steps: u64,
+    length: f64,
+    max_length: f64,
+    depth: u32,
+    max_depth: u32,
+    events: usize,
+    #[serde(serialize_with = "positions")]
+    wraps: &'a [(DVec2, Side)],
+    #[serde(serialize_with = "sides")]
+    sides: &'a [(DVec2, Side)],
+    pull: Option<[f64; 2]>,
+}
+
+fn positions<S: Serializer>(wraps: &&[(DVec2, Side)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(wraps.iter().map(|(at, _)| at.to_array()))
+}
+
+fn sides<S: Serializer>(wraps: &&[(DVec2, Side)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(wraps.iter().map(|(_, side)| side.name()))
+}
+
+/// An event as a JSON object; the fields' order is the keys'.
+#[derive(Serialize)]
+struct EventLine {
+    trace: u64,
+    step: u32,
+    kind: &'static str,
+    vertex: u32,
+    x: f64,
+    y: f64,
+    side: &'static str,
+}
+
+pub(super) fn result_json(out: &mut impl Write, r: &TraceRecord) -> io::Result<()> {
+    let line = ResultLine {
+        trace: r.trace,
+        status: r.status.name(),
+        steps: r.steps,
+        length: r.length,
+        max_length: r.max_length,
+        depth: r.depth,
+        max_depth: r.max_depth,
+        events: r.events.len(),
+        wraps: &r.wraps,
+        sides: &r.wraps,
+        pull: r.pull.map(|p| p.to_array()),
+    };
+    serde_json::to_writer(&mut *out, &line)?;
+    out.write_all(b"\n")
+}
+
+pub(super) fn result_csv(out: &mut impl Write, r: &TraceRecord) -> io::Result<()> {
+    write!(out, "{},{},{},", r.trace, r.status.name(), r.steps)?;
+    number(out, r.length)?;
+    out.write_all(b",")?;
+    number(out, r.max_length)?;
+    write!(out, ",{},{},{},", r.depth, r.max_depth, r.events.len())?;
+    for (i, (at, _)) in r.wraps.iter().enumerate() {
+        out.write_all(if i == 0 { b"" } else { b";" })?;
+        number(out, at.x)?;
+        out.write_all(b" ")?;
+        number(out, at.y)?;
+    }
+    out.write_all(b",")?;
+    for (i, (_, side)) in r.wraps.iter().enumerate() {
+        out.write_all(if i == 0 { b"" } else { b";" })?;
+        out.write_all(side.name().as_bytes())?;
+    }
+    out.write_all(b",")?;
+    if let Some(pull) = r.pull {
+        number(out, pull.x)?;
+        out.write_all(b",")?;
+        number(out, pull.y)?;
+    } else {
+        out.write_all(b",")?;
+    }
+    out.write_all(b"\n")
+}
+
+pub(super) fn event_json(out: &mut impl Write, trace: u64, e: &Event, at: DVec2) -> io::Result<()> {
+    let Event { step, kind, vertex, side } = *e;
+    let line = EventLine { trace, step, kind: kind.name(), vertex, x: at.x, y: at.y, side: side.name() };
+    serde_json::to_writer(&mut *out, &line)?;
+    out.write_all(b"\n")
+}
+
+pub(super) fn event_csv(out: &mut impl Write, trace: u64, e: &Event, at: DVec2) -> io::Result<()> {
+    write!(out, "{trace},{},{},{},", e.step, e.kind.name(), e.vertex)?;
+    number(out, at.x)?;
+    out.write_all(b",")?;
+    number(out, at.y)?;
+    writeln!(out, ",{}", e.side.name())
+}
+
+fn number(out: &mut impl Write, x: f64) -> io::Result<()> {
+    Ok(serde_json::to_writer(out, &x)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_back_to_the_same_f64() {
+        let mut text = Vec::new();
+        let mut state = 3u64;
+        let random = std::iter::repeat_with(|| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            f64::from_bits(state ^ state >> 29)
+        });
+        let special = [0.0, -0.0, 1.0, 5e-324, f64::MIN_POSITIVE, f64::MAX, f64::EPSILON, 0.1 + 0.2, 1e21, 1e-7, 1e16];
+        for x in special.into_iter().chain(random.take(20_000)).filter(|x| x.is_finite()) {
+            text.clear();
+            number(&mut text, x).unwrap();
+            let text = std::str::from_utf8(&text).unwrap();
+            assert_eq!(text.parse::<f64>().unwrap().to_bits(), x.to_bits(), "{text}");
+            assert_eq!(serde_json::from_str::<f64>(text).unwrap().to_bits(), x.to_bits(), "{text}");
+            assert!(text.contains(['.', 'e']), "{text} would read back as an integer");
+        }
+    }
+}

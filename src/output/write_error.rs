@@ -1,0 +1,44 @@
+//! Why a file cannot be written.
+
+use std::path::{Path, PathBuf};
+
+/// Why results or events cannot be written. Whatever stood at the path before still stands there.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The extension names no format that is written here.
+    #[error(
+        "{}: the extension does not name a format; results and events are written as .jsonl, .csv or .parquet",
+        path.display()
+    )]
+    Extension {
+        /// Which file.
+        path: PathBuf,
+    },
+    /// A file cannot be put there.
+    #[error("cannot write {}: {fault}", path.display())]
+    Target {
+        /// Which file.
+        path: PathBuf,
+        /// What is in the way.
+        fault: String,
+    },
+    /// The operating system refuses.
+    #[error("cannot write {}: {cause}", path.display())]
+    Io {
+        /// Which file.
+        path: PathBuf,
+        /// What the system says.
+        #[source]
+        cause: std::io::Error,
+    },
+}
+
+impl WriteError {
+    pub(super) fn io(path: &Path, cause: std::io::Error) -> Self {
+        WriteError::Io { path: path.into(), cause }
+    }
+
+    pub(super) fn target(path: &Path, fault: impl Into<String>) -> Self {
+        WriteError::Target { path: path.into(), fault: fault.into() }
+    }
+}

@@ -1,0 +1,269 @@
+//! Scenes as MovingAI grid maps: the borders between free and blocked cells are the walls.
+
+use glam::DVec2;
+
+use super::Scene;
+use crate::read_error::{Fault, Place};
+
+/// The largest height and width: the corners of a map this large can still be numbered with 32 bits.
+const SIDE_MAX: usize = 1 << 15;
+
+/// Reads a map in time linear in its cells.
+///
+/// Cell (column, row) is the unit square from (column, row) to (column + 1, row + 1), rows downwards as in the file.
+/// What lies around the map is no cell: its outer edge is no wall. Straight runs of borders are one wall; where four
+/// borders meet, all four end. Horizontal walls come first, by row and column, then vertical ones, by column and row.
+pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
+    let grid = Grid::parse(text)?;
+    let mut walls = Vec::new();
+    for y in 1..grid.height() {
+        let walled = |x| grid.blocked(x, y - 1) != grid.blocked(x, y);
+        // Between two borders along the line, either none or two borders leave the corner across the line.
+        let crossed = |x| grid.blocked(x - 1, y) != grid.blocked(x, y);
+        for [from, to] in runs(grid.width, walled, crossed) {
+            walls.push([[from, y], [to, y]]);
+        }
+    }
+    for x in 1..grid.width {
+        let walled = |y| grid.blocked(x - 1, y) != grid.blocked(x, y);
+        let crossed = |y| grid.blocked(x, y - 1) != grid.blocked(x, y);
+        for [from, to] in runs(grid.height(), walled, crossed) {
+            walls.push([[x, from], [x, to]]);
+        }
+    }
+    Ok(Scene::new(walls.into_iter().map(|ends| ends.map(|[x, y]| DVec2::new(x as f64, y as f64))))?)
+}
+
+/// The straight runs `[from, to]` of unit borders `from..to` among `0..count`, broken where they are crossed.
+///
+/// `crossed(i)` tells it for the corner between borders `i - 1` and `i` and is asked only where both are walled.
+fn runs(count: usize, walled: impl Fn(usize) -> bool, crossed: impl Fn(usize) -> bool) -> Vec<[usize; 2]> {
+    let mut runs = Vec::new();
+    let mut start = None;
+    for i in 0..count {
+        match (walled(i), start) {
+            (true, None) => start = Some(i),
+            (true, Some(from)) if crossed(i) => {
+                runs.push([from, i]);
+                start = Some(i);
+            }
+            (false, Some(from)) => {
+                runs.push([from, i]);
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    runs.extend(start.map(|from| [from, count]));
+    runs
+}
+
+/// The cells: `rows[row][column]`, all rows `width` long, every character one that is known.
+struct Grid<'a> {
+    rows: Vec<&'a [u8]>,
+    width: usize,
+}
+
+impl<'a> Grid<'a> {
+    fn height(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn blocked(&self, column: usize, row: usize) -> bool {
+        matches!(self.rows[row][column], b'@' | b'O' | b'T' | b'W')
+    }
+
+    fn parse(text: &'a str) -> Result<Self, Fault> {
+        let mut lines = (1..).zip(text.lines());
+        header(&mut lines, "type", "octile")?;
+        let height = side(header(&mut lines, "height", "512")?, "height")?;
+        let width = side(header(&mut lines, "width", "512")?, "width")?;
+        header(&mut lines, "map", "")?;
+
+        let mut rows = Vec::new();
+        let mut next_line = 5;
+        for (line, text) in lines {
+            if rows.len() < height {
+                rows.push(row(text, line, width)?);
+            } else if !text.trim().is_empty() {
+                let what = format!("a row after the last one; the header says height {height}");
+                return Err(Fault::new(Place::line(line), what));
+            }
+            next_line = line + 1;
+        }
+        if rows.len() < height {
+            let what = format!("the file ends after {} rows; the header says height {height}", rows.len());
+            return Err(Fault::new(Place::line(next_line), what));
+        }
+        Ok(Grid { rows, width })
+    }
+}
+
+/// The rest of the next header line, which must start with `key`, and the line's number.
+fn header<'a>(
+    lines: &mut impl Iterator<Item = (u64, &'a str)>,
+    key: &str,
+    example: &str,
+) -> Result<(u64, &'a str), Fault> {
+    let right = format!("{key} {example}");
+    let right = right.trim();
+    let Some((line, text)) = lines.next() else {
+        return Err(Fault::new(Place::default(), format!("the file ends where the line \"{right}\" must stand")));
+    };
+    let mut words = text.split_whitespace();
+    let key_found = words.next() == Some(key);
+    match (words.next(), words.next()) {
+        (Some(value), None) if key_found && !example.is_empty() => Ok((line, value)),
+        (None, None) if key_found && example.is_empty() => Ok((line, "")),
+        _ => {
+            let what = format!("{:?} stands where a line like {right:?} must stand", excerpt(text));
+            Err(Fault::new(Place::line(line), what))
+        }
+    }
+}
+
+/// The start of `text`: a line of some other file may be very long.
+fn excerpt(text: &str) -> String {
+    let start: String = text.chars().take(40).collect();
+    if start.len() < text.len() { start + "..." } else { start }
+}
+
+fn side((line, text): (u64, &str), name: &str) -> Result<usize, Fault> {
+    text.parse().ok().filter(|side| (1..=SIDE_MAX).contains(side)).ok_or_else(|| {
+        let what = format!("{name} {:?}; it must be a whole number from 1 to {SIDE_MAX}", excerpt(text));
+        Fault::new(Place::line(line), what)
+    })
+}
+
+fn row(text: &str, line: u64, width: usize) -> Result<&[u8], Fault> {
+    let known = |b: u8| matches!(b, b'.' | b'G' | b'S' | b'@' | b'O' | b'T' | b'W');
+    if let Some(column) = text.bytes().position(|b| !known(b)) {
+        // Every character before it is one byte long, so this is the start of a character.
+        let found = text[column..].chars().next().unwrap_or_default();
+        let what = format!("{found:?} is no cell; free cells are . G S, blocked ones @ O T W");
+        return Err(Fault::new(Place::line(line).then("column", column + 1), what));
+    }
+    if text.len() != width {
+        let what = format!("a row of {} cells; the header says width {width}", text.len());
+        return Err(Fault::new(Place::line(line).then("column", text.len().min(width) + 1), what));
+    }
+    Ok(text.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(rows: &[&str]) -> String {
+        let width = rows[0].len();
+        format!("type octile\nheight {}\nwidth {width}\nmap\n{}\n", rows.len(), rows.join("\n"))
+    }
+
+    fn walls(text: &str) -> Vec<[f64; 4]> {
+        let scene = parse(text).unwrap();
+        (0..scene.walls().len()).map(|w| scene.ends(w)).map(|[u, v]| [u.x, u.y, v.x, v.y]).collect()
+    }
+
+    fn fault(text: &str) -> String {
+        let fault = parse(text).unwrap_err();
+        format!("{}: {}", fault.place, fault.what)
+    }
+
+    #[test]
+    fn a_block_has_four_walls_in_order() {
+        let expected = [[1., 1., 3., 1.], [1., 3., 3., 3.], [1., 1., 1., 3.], [3., 1., 3., 3.]];
+        let text = map(&["....", ".@T.", ".OW.", ".GS."]);
+        assert_eq!(walls(&text), expected);
+        assert_eq!(walls(&text.replace('\n', "\r\n")), expected);
+        assert_eq!(walls(text.trim_end()), expected);
+        assert_eq!(walls(&(text + "\n  \n\r\n")), expected);
+    }
+
+    #[test]
+    fn the_outer_edge_is_no_wall() {
+        assert!(walls(&map(&["@@", "@@"])).is_empty());
+        assert_eq!(walls(&map(&["@."])), [[1., 0., 1., 1.]]);
+        assert_eq!(walls(&map(&["@@@", "...", "..."])), [[0., 1., 3., 1.]]);
+    }
+
+    #[test]
+    fn all_four_borders_end_at_a_pinch() {
+        let expected = [[0., 1., 1., 1.], [1., 1., 2., 1.], [1., 0., 1., 1.], [1., 1., 1., 2.]];
+        assert_eq!(walls(&map(&["@.", ".@"])), expected);
+    }
+
+    #[test]
+    fn runs_equal_unit_borders_merged_one_by_one() {
+        let mut state = 7u64;
+        for _ in 0..200 {
+            let rows: Vec<String> = (0..7)
+                .map(|_| {
+                    (0..9)
+                        .map(|_| {
+                            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                            if state >> 63 == 0 { '.' } else { '@' }
+                        })
+                        .collect()
+                })
+                .collect();
+            let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+            let cell = |x: usize, y: usize| rows[y].as_bytes()[x];
+            let found = walls(&map(&rows));
+            let mut units = 0;
+            for y in 1..7 {
+                units += (0..9).filter(|&x| cell(x, y - 1) != cell(x, y)).count();
+            }
+            for x in 1..9 {
+                units += (0..7).filter(|&y| cell(x - 1, y) != cell(x, y)).count();
+            }
+            let length: f64 = found.iter().map(|[a, b, c, d]| (c - a) + (d - b)).sum();
+            assert_eq!(length, units as f64);
+            for [a, b, c, d] in &found {
+                for [e, f, g, h] in &found {
+                    let ends_inside = |x: &f64, y: &f64| (a < x && x < c && b == y) || (b < y && y < d && a == x);
+                    assert!(!ends_inside(e, f) && !ends_inside(g, h), "{rows:?}");
+                    let straight_on = [c, d] == [e, f] && (a == e) == (c == g) && (b == f) == (d == h);
+                    let crossed = || found.iter().filter(|w| w[..2] == [*c, *d] || w[2..] == [*c, *d]).count() == 4;
+                    assert!(!straight_on || crossed(), "{rows:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn faults_name_line_and_column() {
+        let ok = map(&["..", ".@"]);
+        let cell = "is no cell; free cells are . G S, blocked ones @ O T W";
+        let sides = "it must be a whole number from 1 to 32768";
+        for (text, expected) in [
+            ("".into(), ": the file ends where the line \"type octile\" must stand".into()),
+            ("type octile\nheight 2\n".into(), ": the file ends where the line \"width 512\" must stand".into()),
+            ("{}".into(), "line 1: \"{}\" stands where a line like \"type octile\" must stand".into()),
+            (
+                ok.replace("type octile\n", ""),
+                "line 1: \"height 2\" stands where a line like \"type octile\" must stand".into(),
+            ),
+            (ok.replace("map", "map 3"), "line 4: \"map 3\" stands where a line like \"map\" must stand".into()),
+            (
+                ok.replace("width 2", "width"),
+                "line 3: \"width\" stands where a line like \"width 512\" must stand".into(),
+            ),
+            (ok.replace("width 2", "width 0"), format!("line 3: width \"0\"; {sides}")),
+            (
+                ok.replace("height 2", "height 99999999999999999999"),
+                format!("line 2: height \"99999999999999999999\"; {sides}"),
+            ),
+            (ok.replace("height 2", "height -2"), format!("line 2: height \"-2\"; {sides}")),
+            (ok.replace("height 2", "height 3"), "line 7: the file ends after 2 rows; the header says height 3".into()),
+            (ok.replace("height 2", "height 1"), "line 6: a row after the last one; the header says height 1".into()),
+            (ok.replace("width 2", "width 3"), "line 5, column 3: a row of 2 cells; the header says width 3".into()),
+            (ok.replace("width 2", "width 1"), "line 5, column 2: a row of 2 cells; the header says width 1".into()),
+            (ok.replace("..", ".x"), format!("line 5, column 2: 'x' {cell}")),
+            (ok.replace(".@", "é@"), format!("line 6, column 1: 'é' {cell}")),
+            (ok.replace(".@", ". "), format!("line 6, column 2: ' ' {cell}")),
+        ] {
+            assert_eq!(fault(&text), expected);
+        }
+        assert!(fault(&"x".repeat(1000)).len() < 150);
+    }
+}
