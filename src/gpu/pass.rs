@@ -217,3 +217,71 @@ fn chunked(vertices: &[glam::Vec2]) -> Vec<u8> {
     bytes.resize(bytes.len().max(CHUNK_BYTES as usize), 0);
     bytes
 }
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use naga::{Module, TypeInner};
+
+    use super::*;
+    use crate::candidates::ROOM;
+
+    fn shader() -> Module {
+        naga::front::wgsl::parse_str(SWEEP_WGSL).unwrap_or_else(|e| panic!("{}", e.emit_to_string(SWEEP_WGSL)))
+    }
+
+    /// The size of a struct of the shader and the names and offsets of its members.
+    fn layout(module: &Module, name: &str) -> (u32, Vec<(String, u32)>) {
+        let ty =
+            module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap_or_else(|| panic!("no {name}"));
+        let TypeInner::Struct { members, span } = &ty.1.inner else { panic!("{name} is no struct") };
+        (*span, members.iter().map(|m| (m.name.clone().unwrap(), m.offset)).collect())
+    }
+
+    #[test]
+    fn the_shader_is_valid() {
+        use naga::valid::{Capabilities, ValidationFlags, Validator};
+        Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&shader()).unwrap();
+    }
+
+    /// The members of a host struct with their offsets.
+    macro_rules! members {
+        ($ty:ty: $($member:ident),*) => {
+            vec![$((stringify!($member).to_owned(), offset_of!($ty, $member) as u32)),*]
+        };
+    }
+
+    #[test]
+    fn host_and_shader_lay_their_structs_out_alike() {
+        let module = shader();
+        let query = (size_of::<Query>() as u32, members!(Query: right, left, far));
+        assert_eq!(layout(&module, "Query"), query);
+        assert_eq!(layout(&module, "Found"), (size_of::<Found>() as u32, members!(Found: count, vertices)));
+        let (size, round) = layout(&module, "Round");
+        assert_eq!((size, &round[..1]), (size_of::<Round>() as u32, &members!(Round: queries)[..]));
+        let (size, mut chunk) = layout(&module, "Chunk");
+        assert_eq!(u64::from(size), CHUNK_BYTES);
+        assert_eq!(chunk.pop(), Some(("pairs".to_owned(), size_of::<ChunkHeader>() as u32)));
+        assert_eq!(chunk, members!(ChunkHeader: first, count, unused));
+    }
+
+    #[test]
+    fn host_and_shader_agree_on_numbers() {
+        let module = shader();
+        assert_eq!(module.entry_points[0].workgroup_size, [WORKGROUP, 1, 1]);
+        assert!(SWEEP_WGSL.contains(&format!("count < {ROOM}u")));
+    }
+
+    #[test]
+    fn chunks_hold_all_vertices_once() {
+        let vertices: Vec<glam::Vec2> = (0..CHUNK_VERTICES + 3).map(|i| glam::Vec2::splat(i as f32)).collect();
+        let bytes = chunked(&vertices);
+        assert_eq!(bytes.len() as u64, 2 * CHUNK_BYTES);
+        let second = &bytes[CHUNK_BYTES as usize..];
+        let header: ChunkHeader = bytemuck::pod_read_unaligned(&second[..size_of::<ChunkHeader>()]);
+        assert_eq!((header.first as usize, header.count), (CHUNK_VERTICES, 3));
+        assert_eq!(&second[16..40], bytemuck::cast_slice::<_, u8>(&vertices[CHUNK_VERTICES..]));
+        assert_eq!(chunked(&[]).len() as u64, CHUNK_BYTES);
+    }
+}

@@ -1,6 +1,8 @@
 //! All integration tests, in one binary.
 
+mod batch;
 mod golden;
 mod random;
 mod scenes;
+mod shader;
 mod support;

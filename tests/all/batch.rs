@@ -1,0 +1,154 @@
+//! The batch pipeline at its edges, and on real scenes: always the reference's records, event for event.
+
+use glam::DVec2;
+use tautline::candidates::{CandidatePass, CpuPass, Found, Frame, ROOM, swept};
+use tautline::engine::{Cpu, Engine, EngineError, Gpu, Job, Reference};
+use tautline::example::{Walker, floor_plan, walks};
+use tautline::gpu::GpuPass;
+use tautline::rope::TraceRecord;
+use tautline::scene::{Model, Scene, read_scene};
+use tautline::trace::{SettledTrace, Trace, settle};
+
+use crate::support::software;
+
+fn run(engine: &mut dyn Engine, model: &Model, traces: &[SettledTrace]) -> Vec<TraceRecord> {
+    engine.evaluate(model, traces, &Job::new()).unwrap()
+}
+
+/// The `gpu` engine with a given number of slots.
+fn gpu(model: &Model, slots: usize) -> Gpu {
+    let frame = Frame::new(model);
+    Gpu::with_pass(GpuPass::new(software(), model, &frame, slots).unwrap(), frame)
+}
+
+fn settled(model: &Model, traces: &[Trace]) -> Vec<SettledTrace> {
+    traces.iter().map(|t| settle(model, t)).collect()
+}
+
+fn example(walker: Walker, count: u64) -> (Model, Vec<SettledTrace>) {
+    let model = Model::new(floor_plan(), None).unwrap();
+    let traces = settled(&model, &walks(&model, walker, count));
+    (model, traces)
+}
+
+/// Compares both batch engines with the reference, which must have met events for that to mean anything.
+fn agree(model: &Model, traces: &[SettledTrace]) {
+    let truth = run(&mut Reference, model, traces);
+    assert!(truth.iter().any(|r| r.events.len() > 4), "nothing happened to compare");
+    assert_eq!(run(&mut Cpu::new(model), model, traces), truth);
+    assert_eq!(run(&mut gpu(model, 1 << 13), model, traces), truth);
+}
+
+#[test]
+fn batches_larger_than_the_slots() {
+    let (model, mut traces) = example(Walker { step: 0.3, steps: 200, seed: 5 }, 40);
+    // Traces of all lengths, so that slots are freed at different times.
+    for (i, short) in walks(&model, Walker { step: 0.3, steps: 7, seed: 6 }, 40).into_iter().enumerate() {
+        traces.insert(i * 2, settle(&model, &short));
+    }
+    let truth = run(&mut Reference, &model, &traces);
+    for slots in [1, 3, 79, 80, 81] {
+        assert_eq!(run(&mut gpu(&model, slots), &model, &traces), truth, "{slots} slots");
+        assert_eq!(run(&mut Cpu::with_slots(&model, slots), &model, &traces), truth, "{slots} slots");
+    }
+}
+
+#[test]
+fn one_engine_serves_batch_after_batch() {
+    let (model, traces) = example(Walker { step: 0.3, steps: 100, seed: 7 }, 20);
+    let mut engine = gpu(&model, 16);
+    let truth = run(&mut Reference, &model, &traces);
+    assert_eq!(run(&mut engine, &model, &traces[..3]), truth[..3]);
+    assert_eq!(run(&mut engine, &model, &traces), truth);
+}
+
+#[test]
+fn windows_of_any_bound_change_nothing() {
+    let (model, traces) = example(Walker { step: 0.2, steps: 300, seed: 8 }, 12);
+    let truth = run(&mut Reference, &model, &traces);
+    for window in [1, 2, 5, 64, 1000] {
+        assert_eq!(run(&mut gpu(&model, 64).window(window), &model, &traces), truth, "window {window}");
+        assert_eq!(run(&mut Cpu::new(&model).window(window), &model, &traces), truth, "window {window}");
+    }
+}
+
+#[test]
+fn empty_batches_and_traces_of_length_one() {
+    let (model, _) = example(Walker { step: 0.3, steps: 1, seed: 1 }, 1);
+    let anchor = model.anchor();
+    let one = |id, at| Trace { id, points: vec![at] };
+    let traces = settled(&model, &[one(0, anchor), one(4, anchor + DVec2::new(0.5, 0.1)), one(9, anchor)]);
+    let truth = run(&mut Reference, &model, &traces);
+    assert_eq!(
+        truth.iter().map(|r| (r.trace, r.steps, r.depth)).collect::<Vec<_>>(),
+        [(0, 0, 0), (4, 0, 0), (9, 0, 0)]
+    );
+    assert_eq!(truth[1].length, anchor.distance(anchor + DVec2::new(0.5, 0.1)));
+    for engine in [&mut gpu(&model, 8) as &mut dyn Engine, &mut Cpu::new(&model)] {
+        assert_eq!(run(engine, &model, &traces), truth);
+        assert_eq!(run(engine, &model, &[]), []);
+    }
+}
+
+#[test]
+fn a_scene_without_walls() {
+    let model = Model::new(Scene::default(), Some(DVec2::new(1.0, 2.0))).unwrap();
+    let points = vec![DVec2::new(4.0, 6.0), DVec2::new(1.0, 3.0)];
+    let traces = settled(&model, &[Trace { id: 0, points }]);
+    let record = run(&mut gpu(&model, 8), &model, &traces).remove(0);
+    assert_eq!((record.length, record.max_length, record.depth, record.pull), (1.0, 5.0, 0, Some(-DVec2::Y)));
+}
+
+/// 60 wall ends on an arc about the anchor, swept in a few steps: each step meets more than a query has room for.
+#[test]
+fn overflowing_queries_are_evaluated_exactly() {
+    let end = |k: usize, r: f64| r * DVec2::from_angle(-0.7 + 1.4 * k as f64 / 59.0);
+    let walls = (0..60).map(|k| [end(k, 1.0 + 0.01 * (k % 7) as f64), end(k, 0.4)]);
+    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap();
+    let at = |turn: f64| 3.0 * DVec2::from_angle(turn);
+    let points: Vec<DVec2> = vec![at(-1.2), at(-0.9), at(1.0), at(1.3), at(-1.1), at(0.1), at(-1.0)];
+    let frame = Frame::new(&model);
+    let mut found = [Found::default()];
+    let query = swept(&frame, model.anchor(), &points[1..3]).query;
+    CpuPass::new(&model, &frame, 1).run(&[query], &mut found).unwrap();
+    assert!(found[0].count as usize > ROOM && found[0].candidates().is_none(), "no overflow: {found:?}");
+    // The first leg, from the anchor to the ring, is clear: it goes below all walls.
+    let traces = settled(&model, &[Trace { id: 0, points }]);
+    assert_eq!(traces[0].violation(), None);
+    agree(&model, &traces);
+}
+
+#[test]
+fn real_coasts() {
+    let scene = read_scene(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/aegean.geojson").as_ref()).unwrap();
+    let model = Model::new(scene, None).unwrap();
+    for (step, steps) in [(0.5, 1000), (5.0, 200), (25.0, 100)] {
+        let walker = Walker { step, steps, seed: 11 };
+        agree(&model, &settled(&model, &walks(&model, walker, 20)));
+    }
+}
+
+/// More vertices than one uniform buffer holds.
+#[test]
+fn scenes_of_several_chunks() {
+    let n = 100;
+    let walls = (0..n * n).map(|k| {
+        let centre = DVec2::new(f64::from(k % n), f64::from(k / n));
+        let along = 0.4 * DVec2::from_angle(f64::from(k) * 2.4);
+        [centre - along, centre + along]
+    });
+    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(50.5, 49.5))).unwrap();
+    assert_eq!(model.vertices().len(), 20_000);
+    agree(&model, &settled(&model, &walks(&model, Walker { step: 0.8, steps: 200, seed: 2 }, 10)));
+}
+
+#[test]
+fn a_stopped_job_ends_early() {
+    let (model, traces) = example(Walker { step: 0.3, steps: 100, seed: 1 }, 4);
+    for engine in [&mut gpu(&model, 2) as &mut dyn Engine, &mut Cpu::new(&model), &mut Reference] {
+        let job = Job::new();
+        job.stop();
+        assert!(matches!(engine.evaluate(&model, &traces, &job), Err(EngineError::Stopped)), "{}", engine.name());
+        assert_eq!(job.steps(), 0);
+    }
+}
