@@ -18,7 +18,7 @@ const CHANGES: [(&str, &str); 9] = [
     ("far) >= 0.0", "far) == 0.0"),
     ("count < 15u", "count > 15u"),
     ("lane >= round.queries", "lane < round.queries"),
-    ("chunk.first + 2u * i);", "chunk.first + 3u * i);"),
+    ("chunk.first + 2u * i);", "chunk.first + 1u * i);"),
     ("2u * i + 1u < chunk.count", "2u * i + 1u > chunk.count"),
     ("chunk.count + 1u) / 2u", "chunk.count + 1u) / 4u"),
 ];
