@@ -144,7 +144,9 @@ impl<'a> Settler<'a> {
         Settler { model, trace, settled, touching: Vec::new() }
     }
 
-    fn violate(&mut self, step: usize, kind: ViolationKind, wall: u32, from: DVec2, to: DVec2) {
+    fn violate(&mut self, step: usize, kind: ViolationKind, wall: u32) {
+        let from = if step == 0 { self.model.anchor() } else { self.trace.points[step - 1] };
+        let to = self.trace.points[step];
         let ends = self.model.scene().ends(wall as usize);
         let found = Violation { trace: self.trace.id, step, kind, wall: wall as usize, ends, from, to };
         if self.settled.violation.is_none_or(|v| (found.step, found.wall) < (v.step, v.wall)) {
@@ -198,14 +200,14 @@ impl<'a> Settler<'a> {
             near = true;
             let (from_a, from_b) = (orient(u, v, a), orient(u, v, b));
             if from_b == 0.0 && between(u, v, b) && self.model.vertex_at(b).is_none() {
-                self.violate(step, ViolationKind::EndsInside, wall, a, b);
+                self.violate(step, ViolationKind::EndsInside, wall);
             }
             if a == b || (from_a > 0.0 && from_b > 0.0) || (from_a < 0.0 && from_b < 0.0) {
                 continue;
             }
             let (to_u, to_v) = (orient(a, b, u), orient(a, b, v));
             if from_a * from_b < 0.0 && to_u * to_v < 0.0 {
-                self.violate(step, ViolationKind::Crosses, wall, a, b);
+                self.violate(step, ViolationKind::Crosses, wall);
             }
             passed
                 .extend([(to_u, u), (to_v, v)].into_iter().filter(|&(s, w)| s == 0.0 && between(a, b, w)).map(|p| p.1));
@@ -284,9 +286,9 @@ impl<'a> Settler<'a> {
                 let at = stays[i].at;
                 let walls = self.model.index().near(at, at);
                 let wall = walls.filter(|&w| self.model.scene().ends(w as usize).contains(&at)).min();
-                let step = self.settled.step(stays[i].first);
-                let from = stays[i - 1].at;
-                self.violate(step, ViolationKind::SlipsThrough, wall.expect("a corner has walls"), from, at);
+                // The step that goes on to the wrong side.
+                let step = self.settled.step(stays[i].end);
+                self.violate(step, ViolationKind::SlipsThrough, wall.expect("a corner has walls"));
             }
             chosen.push((i as u32, corner.hairs(from, to)));
         }

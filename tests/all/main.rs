@@ -6,3 +6,4 @@ mod random;
 mod scenes;
 mod shader;
 mod support;
+mod touch;

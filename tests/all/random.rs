@@ -26,7 +26,10 @@ fn ropes(model: &Model, trace: &Trace, record: &TraceRecord) -> Vec<Vec<(u32, &'
 }
 
 fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Model, &Trace, &SettledTrace)) {
-    let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() });
+    // PROPTEST_CASES=2560 runs ten times as many.
+    let default = ProptestConfig::default();
+    let cases = cases * default.cases / 256;
+    let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..default });
     let result = runner.run(&recipe(kind, touching), |recipe| {
         let model = recipe.model();
         let trace = recipe.trace(&model, 0);

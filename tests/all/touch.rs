@@ -1,0 +1,137 @@
+//! Traces that touch walls: small cases worked out by hand.
+
+use glam::DVec2;
+use tautline::engine::{Engine, Funnel, Job, Reference};
+use tautline::rope::replay;
+use tautline::scene::{Model, Scene};
+use tautline::trace::{Trace, ViolationKind, settle};
+
+type P = [f64; 2];
+
+fn model(anchor: P, walls: &[[P; 2]]) -> Model {
+    let walls = walls.iter().map(|w| w.map(DVec2::from));
+    Model::new(Scene::new(walls).unwrap(), Some(anchor.into())).unwrap()
+}
+
+fn trace(points: &[P]) -> Trace {
+    Trace { id: 0, points: points.iter().copied().map(DVec2::from).collect() }
+}
+
+/// The taut rope after every step, as vertices with `<` for left and `>` for right; both methods must agree on it.
+fn ropes(model: &Model, points: &[P]) -> Vec<String> {
+    let trace = trace(points);
+    let settled = settle(model, &trace);
+    assert_eq!(settled.violation(), None);
+    let by = |engine: &mut dyn Engine| {
+        let record = engine.evaluate(model, &[settled.clone()], &Job::new()).unwrap().remove(0);
+        let mut ropes = vec![];
+        replay(model.anchor(), model.vertices(), points.len(), &record.events, |k, rope| {
+            let contacts = rope.taut(points[k].into());
+            let sign = |side: &str| if side == "left" { '<' } else { '>' };
+            ropes.push(contacts.iter().map(|c| format!("{}{}", c.vertex, sign(c.side.name()))).collect::<String>());
+        });
+        ropes
+    };
+    let ropes = by(&mut Reference);
+    assert_eq!(ropes, by(&mut Funnel));
+    ropes
+}
+
+fn violation(model: &Model, points: &[P]) -> Option<(usize, ViolationKind, usize)> {
+    settle(model, &trace(points)).violation().map(|v| (v.step, v.kind, v.wall))
+}
+
+/// A wall from vertex 0 at the origin to vertex 1 at (4, 0).
+const LONE: [[P; 2]; 1] = [[[0.0, 0.0], [4.0, 0.0]]];
+
+/// A closed square with vertices 0 (0, 0), 1 (2, 0), 2 (2, 2), 3 (0, 2).
+const BOX: [[P; 2]; 4] =
+    [[[0.0, 0.0], [2.0, 0.0]], [[2.0, 0.0], [2.0, 2.0]], [[2.0, 2.0], [0.0, 2.0]], [[0.0, 2.0], [0.0, 0.0]]];
+
+#[test]
+fn a_trace_turns_back_on_a_wall_end() {
+    // To the end and back: nothing is wound. To the end and on past it: wound round it.
+    let m = model([1.0, -1.0], &LONE);
+    assert_eq!(ropes(&m, &[[0.0, 0.0], [-1.0, -1.0]]), ["", ""]);
+    assert_eq!(ropes(&m, &[[0.0, 0.0], [1.0, 1.0]]), ["", "0>"]);
+    assert_eq!(ropes(&m, &[[-1.0, -1.0], [1.0, 1.0]]), ["", "0>"]);
+}
+
+#[test]
+fn a_slide_stays_on_the_side_that_it_comes_from() {
+    // From below along the wall and off below: never above it.
+    let m = model([1.0, -1.0], &LONE);
+    assert_eq!(ropes(&m, &[[-1.0, -1.0], [0.0, 0.0], [4.0, 0.0], [5.0, -1.0]]), ["", "", "", ""]);
+    // From above and off above: round the near end.
+    assert_eq!(ropes(&m, &[[-1.0, 0.5], [0.0, 0.0], [4.0, 0.0], [5.0, 1.0]]), ["", "", "0>", "0>"]);
+    // From below and off above: both sides would do, so it is the left.
+    assert_eq!(ropes(&m, &[[-1.0, -1.0], [0.0, 0.0], [4.0, 0.0], [3.0, 1.0]]), ["", "", "0>", "0>"]);
+}
+
+#[test]
+fn a_slide_straight_over_both_ends_goes_on_the_left() {
+    // From east to west the left is below, where the anchor is; from west to east it is above.
+    let m = model([2.0, -1.0], &LONE);
+    assert_eq!(ropes(&m, &[[5.0, 0.0], [-1.0, 0.0], [2.0, -0.5]]), ["", "", ""]);
+    assert_eq!(ropes(&m, &[[-1.0, 0.0], [5.0, 0.0], [2.0, -0.5]]), ["", "0>", "0>1>"]);
+    assert_eq!(
+        ropes(&m, &[[-1.0, 0.0], [0.0, 0.0], [4.0, 0.0], [5.0, 0.0], [2.0, -0.5]]),
+        ["", "", "0>", "0>", "0>1>"]
+    );
+}
+
+#[test]
+fn slides_go_round_the_corners_of_a_box() {
+    let m = model([-1.0, -1.0], &BOX);
+    let round = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0], [-1.0, 0.5]];
+    assert_eq!(ropes(&m, &round), ["", "", "1<", "1<2<", "1<2<3<", "1<2<3<"]);
+    // From corner to corner inside, the anchor being inside: nothing to wind round.
+    let inside = model([0.5, 0.5], &BOX);
+    assert_eq!(ropes(&inside, &[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0]]), ["", "", "", "", ""]);
+}
+
+#[test]
+fn a_slide_rounds_the_tip_of_a_wall() {
+    // A stick on a box: along its one side to the tip and back along the other.
+    let mut walls = BOX.to_vec();
+    walls.push([[2.0, 2.0], [5.0, 5.0]]);
+    let m = model([3.0, 1.0], &walls);
+    assert_eq!(ropes(&m, &[[2.0, 0.0], [2.0, 2.0], [5.0, 5.0], [2.0, 2.0], [0.0, 2.0]]), ["", "", "", "4<", "4<"]);
+}
+
+#[test]
+fn a_step_passes_several_ends_at_once() {
+    // Three posts in a row: their ends lie on one line, which the step follows. They stand below it.
+    let posts = [0.0, 1.0, 2.0].map(|x| [[x, 0.0], [x, -1.0]]);
+    let m = model([-1.0, -0.5], &posts);
+    assert_eq!(ropes(&m, &[[-1.0, 0.0], [3.0, 0.0], [2.5, -2.0]]), ["", "0>", "0>4>"]);
+}
+
+#[test]
+fn an_anchor_at_a_walls_end() {
+    let m = model([0.0, 0.0], &LONE);
+    assert_eq!(ropes(&m, &[[0.0, 0.0], [4.0, 0.0], [5.0, 1.0], [5.0, -1.0], [1.0, -1.0]]), ["", "", "", "1>", "1>"]);
+    // Past the anchor and back.
+    assert_eq!(ropes(&m, &[[1.0, 1.0], [0.0, 0.0], [-1.0, -1.0], [1.0, -1.0]]), ["", "", "", ""]);
+}
+
+#[test]
+fn walls_that_overlap_are_slid_along_as_one() {
+    let m = model([1.0, -1.0], &[[[0.0, 0.0], [2.0, 0.0]], [[1.0, 0.0], [3.0, 0.0]]]);
+    assert_eq!(ropes(&m, &[[0.0, 0.0], [3.0, 0.0], [4.0, -1.0]]), ["", "", ""]);
+    assert_eq!(ropes(&m, &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, -1.0]]), ["", "", "", "", ""]);
+}
+
+#[test]
+fn steps_that_break_the_rules_are_named() {
+    use ViolationKind::{Crosses, EndsInside, SlipsThrough};
+    let m = model([1.0, -1.0], &BOX);
+    assert_eq!(violation(&m, &[[1.0, 1.0]]), Some((0, Crosses, 0)));
+    assert_eq!(violation(&m, &[[3.0, -1.0], [3.0, 1.0], [1.0, 1.5]]), Some((2, Crosses, 1)));
+    assert_eq!(violation(&m, &[[1.0, -0.5], [1.0, 0.0]]), Some((1, EndsInside, 0)));
+    // Through the corner of the closed box, at one stroke or resting there.
+    assert_eq!(violation(&m, &[[-1.0, -1.0], [1.0, 1.0]]), Some((1, SlipsThrough, 0)));
+    assert_eq!(violation(&m, &[[0.0, 0.0], [0.0, 0.0], [1.0, 1.0]]), Some((2, SlipsThrough, 0)));
+    // Touching from outside is legal in every way.
+    assert_eq!(violation(&m, &[[0.0, 0.0], [-1.0, 1.0], [0.0, 2.0], [3.0, 2.0], [2.0, 0.0], [2.0, 2.0]]), None);
+}
