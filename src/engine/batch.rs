@@ -104,15 +104,25 @@ impl<'a> Slot<'a> {
     fn advance(&mut self, model: &Model, found: &Found) -> usize {
         let start = self.walk.at;
         match found.candidates() {
+            // Where a trace crosses walls, the rope's last leg is not free, and it can meet what lies outside the swept
+            // triangle.
+            _ if self.trace.violation().is_some() => self.try_all(model),
             Some(candidates) => {
                 self.follow(model, candidates);
                 self.adapt(candidates.len(), self.end - start);
             }
             None if self.end - start > 1 => self.window = 1.max((self.end - start) / 4),
-            // Too many for one leg: try them all.
-            None => while self.walk.next(model, self.trace, 0..model.vertices().len() as u32).is_some() {},
+            // Too many for one leg.
+            None => self.try_all(model),
         }
         self.walk.at - start
+    }
+
+    /// Plays the window's legs with all vertices, as the reference does.
+    fn try_all(&mut self, model: &Model) {
+        while self.walk.at < self.end {
+            self.walk.next(model, self.trace, 0..model.vertices().len() as u32);
+        }
     }
 
     /// Plays the window's legs. After wraps the pivot stays inside the swept triangle, which is convex and so holds all

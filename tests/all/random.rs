@@ -9,7 +9,7 @@ use tautline::rope::{TraceRecord, replay};
 use tautline::scene::Model;
 use tautline::trace::{SettledTrace, Trace, settle};
 
-use crate::scenes::{KINDS, Kind, recipe};
+use crate::scenes::{KINDS, Kind, Recipe, recipe};
 use crate::support::software;
 
 fn run(engine: &mut dyn Engine, model: &Model, traces: &[SettledTrace]) -> Vec<TraceRecord> {
@@ -25,23 +25,35 @@ fn ropes(model: &Model, trace: &Trace, record: &TraceRecord) -> Vec<Vec<(u32, &'
     ropes
 }
 
+/// Runs `test` on random scenes of one kind, with traces that keep to the rules.
 fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Model, &Trace, &SettledTrace)) {
+    check_traces(kind, touching, cases, Recipe::trace, |model, trace, settled| {
+        assert_eq!(settled.violation(), None);
+        test(model, trace, settled);
+    });
+}
+
+fn check_traces(
+    kind: Kind,
+    touching: bool,
+    cases: u32,
+    walk: impl Fn(&Recipe, &Model, u64) -> Trace,
+    test: impl Fn(&Model, &Trace, &SettledTrace),
+) {
     // PROPTEST_CASES=2560 runs ten times as many.
     let default = ProptestConfig::default();
     let cases = cases * default.cases / 256;
     let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..default });
     let result = runner.run(&recipe(kind, touching), |recipe| {
         let model = recipe.model();
-        let trace = recipe.trace(&model, 0);
-        let settled = settle(&model, &trace);
-        prop_assert_eq!(settled.violation(), None);
-        test(&model, &trace, &settled);
+        let trace = walk(&recipe, &model, 0);
+        test(&model, &trace, &settle(&model, &trace));
         Ok(())
     });
     if let Err(TestError::Fail(why, recipe)) = &result {
         let model = recipe.model();
         let walls: Vec<_> = (0..model.scene().walls().len()).map(|w| model.scene().ends(w)).collect();
-        let points = recipe.trace(&model, 0).points;
+        let points = walk(recipe, &model, 0).points;
         panic!("{kind:?}, touching {touching}: {why}\nanchor {}\nwalls {walls:?}\ntrace {points:?}", model.anchor());
     }
     result.unwrap();
@@ -93,6 +105,20 @@ fn gpu_gives_the_references_events() {
                 let batch = std::slice::from_ref(settled);
                 let truth = run(&mut Reference, model, batch);
                 assert_eq!(run(&mut Gpu::new(adapter.clone(), model).unwrap(), model, batch), truth);
+            });
+        }
+    }
+}
+
+/// Traces that cross walls at will are evaluated all the same when they are only to be marked.
+#[test]
+fn lawless_traces_get_the_references_events_too() {
+    for kind in KINDS {
+        for touching in [false, true] {
+            check_traces(kind, touching, 300, Recipe::lawless_trace, |model, _, settled| {
+                let batch = std::slice::from_ref(settled);
+                let truth = run(&mut Reference, model, batch);
+                assert_eq!(run(&mut Cpu::new(model), model, batch), truth);
             });
         }
     }

@@ -108,6 +108,19 @@ impl Recipe {
         trace
     }
 
+    /// All moves, whether they keep to the rules or not.
+    pub(crate) fn lawless_trace(&self, model: &Model, id: u64) -> Trace {
+        let mut points = vec![model.anchor()];
+        for &(dx, dy, vertex) in &self.moves {
+            let here = points[points.len() - 1];
+            points.push(match vertex {
+                Some(v) if !model.vertices().is_empty() => model.vertices()[usize::from(v) % model.vertices().len()],
+                _ => self.moved(here, dx, dy),
+            });
+        }
+        Trace { id, points }
+    }
+
     fn moved(&self, here: DVec2, dx: i16, dy: i16) -> DVec2 {
         let d = DVec2::new(f64::from(dx), f64::from(dy)) / 32768.0;
         match self.kind {
