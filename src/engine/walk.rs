@@ -41,7 +41,7 @@ impl Walk {
         self.max_length = 0.0;
         self.max_depth = 0;
         self.events.clear();
-        self.leg_room = model.vertices().len();
+        self.leg_room = model.vertices().len() + 1;
         self.look(trace);
     }
 
@@ -60,16 +60,23 @@ impl Walk {
         candidates: impl IntoIterator<Item = u32>,
     ) -> Option<EventKind> {
         let leg = Leg { a0: trace.point(self.at), a1: trace.point(self.at + 1) };
-        match self.sweep.next(&mut self.rope, &leg, model.vertices(), candidates) {
+        let event = match self.leg_room {
+            // Within a leg the rope unwraps, then wraps, each contact and each vertex once. Only where a trace goes
+            // through walls can a rope turn more than half way round a wall's end, and then the update may find no end.
+            0 => {
+                assert!(trace.violation().is_some(), "a leg that keeps to the rules meets no vertex twice");
+                None
+            }
+            _ => self.sweep.next(&mut self.rope, &leg, model.vertices(), candidates),
+        };
+        match event {
             Some((kind, vertex, side)) => {
-                // Within a leg the rope unwraps, then wraps, each contact and each vertex once. More is a broken update,
-                // which must not go on for ever.
-                self.leg_room = self.leg_room.checked_sub(1).expect("a leg meets no vertex twice");
+                self.leg_room -= 1;
                 self.note(trace, kind, vertex, side);
                 Some(kind)
             }
             None => {
-                self.leg_room = model.vertices().len() + self.rope.contacts().len();
+                self.leg_room = model.vertices().len() + self.rope.contacts().len() + 1;
                 self.arrive(trace);
                 None
             }

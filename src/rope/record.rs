@@ -42,7 +42,8 @@ pub struct Event {
 pub enum Status {
     /// Every step kept clear of the walls.
     Ok,
-    /// Some step crossed a wall or stood in one; the rope is that of the trace as if the walls let it through.
+    /// Some step crossed a wall or stood in one. From there on the rope is what the update makes of the steps as if the
+    /// walls let them through; it can be wrong once it turns more than half way round a wall's end.
     Violation,
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use tautline::engine::{Engine, Funnel, Job, Reference};
-use tautline::rope::replay;
+use tautline::rope::{Status, replay};
 use tautline::scene::{Model, Scene};
 use tautline::trace::{Trace, ViolationKind, settle};
 
@@ -134,4 +134,28 @@ fn steps_that_break_the_rules_are_named() {
     assert_eq!(violation(&m, &[[0.0, 0.0], [0.0, 0.0], [1.0, 1.0]]), Some((2, SlipsThrough, 0)));
     // Touching from outside is legal in every way.
     assert_eq!(violation(&m, &[[0.0, 0.0], [-1.0, 1.0], [0.0, 2.0], [3.0, 2.0], [2.0, 0.0], [2.0, 2.0]]), None);
+}
+
+/// Through walls a rope can turn more than half way round a wall's end, where the update's rules found events without end.
+#[test]
+fn a_trace_through_walls_comes_to_an_end() {
+    let walls = [
+        [[4.0, 2.0], [5.0, 2.0]],
+        [[-4.0, -2.0], [-4.0, -3.0]],
+        [[-2.0, 1.0], [-1.0, 1.0]],
+        [[-2.0, 2.0], [-2.0, -1.0]],
+    ];
+    #[rustfmt::skip]
+    let points = [
+        [0.013, 0.017], [-1.0, 2.0], [-2.5, 0.0], [0.5, 0.0], [2.0, -1.0], [0.5, 2.5], [3.0, 0.0], [5.0, 3.5], [4.5, 5.5],
+        [4.5, 7.5], [2.0, 5.0], [3.5, 2.0], [5.0, 0.5], [4.0, -3.5], [4.0, -2.0], [4.5, 1.5], [0.5, 5.0], [-2.0, 2.0],
+        [-3.0, -0.5], [-4.5, 1.0], [-3.5, 0.5], [-1.0, 4.0], [0.5, 4.5], [3.5, 0.5], [3.0, -1.0], [2.0, 2.0], [3.5, 2.5],
+        [2.0, 6.5], [1.0, 7.5], [0.5, 6.0], [-1.5, 5.0], [2.5, 5.5], [3.0, 2.0], [4.5, 4.5], [0.5, 5.0], [4.5, 2.0],
+        [6.5, 0.5], [3.0, 3.0], [-0.5, 1.5], [0.0, 0.0], [-1.0, -0.5], [0.0, 0.0],
+    ];
+    let m = model([0.013, 0.017], &walls);
+    let settled = settle(&m, &trace(&points));
+    assert!(settled.violation().is_some());
+    let record = Reference.evaluate(&m, &[settled], &Job::new()).unwrap().remove(0);
+    assert_eq!((record.status, record.steps), (Status::Violation, 41));
 }
