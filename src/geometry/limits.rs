@@ -8,11 +8,12 @@ use glam::DVec2;
 /// which leaves room for the error terms of the exact arithmetic under the f64 maximum of 2^1024.
 pub const COORDINATE_MAX: f64 = f64::from_bits((1023 + 500) << 52);
 
-/// The smallest magnitude of a coordinate that is not zero: 2^-480, about 3.2e-145.
+/// The smallest magnitude of a coordinate that is not zero: 2^-450, about 3.4e-136.
 ///
-/// Such a coordinate is a multiple of 2^-532, so every exact product of two differences is a multiple of 2^-1064
-/// and no part of it falls below the smallest f64, 2^-1074.
-pub const COORDINATE_MIN: f64 = f64::from_bits((1023 - 480) << 52);
+/// Such a coordinate is a multiple of 2^-502, so every exact product of two differences is a multiple of 2^-1004: no part
+/// of it falls below the smallest f64, 2^-1074. And where such a product does not fit 53 bits, it is at least 2^-951, so
+/// the predicates' error bound, 2^-51 of that, is itself a normal number (above 2^-1022) and as large as it should be.
+pub const COORDINATE_MIN: f64 = f64::from_bits((1023 - 450) << 52);
 
 /// Why a coordinate cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -24,7 +25,7 @@ pub enum CoordinateFault {
     #[error("{0:e} is too large for exact products: coordinates must lie within 2^500 (3.27e150) of zero")]
     TooLarge(f64),
     /// Below [`COORDINATE_MIN`] in magnitude and not zero.
-    #[error("{0:e} is too small for exact products: coordinates must be 0 or at least 2^-480 (3.2e-145) in magnitude")]
+    #[error("{0:e} is too small for exact products: coordinates must be 0 or at least 2^-450 (3.4e-136) in magnitude")]
     TooSmall(f64),
 }
 
@@ -64,7 +65,7 @@ mod tests {
     #[test]
     fn limits_are_the_powers_of_two_they_say() {
         assert_eq!(COORDINATE_MAX, 2f64.powi(500));
-        assert_eq!(COORDINATE_MIN, 2f64.powi(-480));
+        assert_eq!(COORDINATE_MIN, 2f64.powi(-450));
     }
 
     #[test]

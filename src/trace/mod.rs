@@ -6,11 +6,14 @@ mod csv_file;
 mod parquet_file;
 mod read;
 mod settle;
+mod settled;
+mod slide;
 
 use glam::DVec2;
 
 pub use read::read_traces;
-pub use settle::{SettledTrace, Violation, ViolationKind, settle};
+pub use settle::settle;
+pub use settled::{SettledTrace, Violation, ViolationKind};
 
 /// One trace: its number and its points, in the scene's frame and unit.
 ///

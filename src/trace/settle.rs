@@ -7,107 +7,14 @@
 
 use glam::DVec2;
 
-use super::Trace;
-use super::corner::{Corner, Way};
-use crate::geometry::{Hair, TracePoint, Turn, between, orient};
+use super::corner::Corner;
+use super::slide::{Stay, choose_sides, incoming, outgoing};
+use super::{SettledTrace, Trace, Violation, ViolationKind};
+use crate::geometry::{Hair, between, orient};
 use crate::scene::Model;
 
 /// How many steps share one look into the index. Traces move in small steps, so neighbours see the same few walls.
 const STEPS_PER_LOOK: usize = 16;
-
-/// What a trace does that a rope among solid walls cannot follow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ViolationKind {
-    /// The step crosses a wall.
-    Crosses,
-    /// The step ends inside a wall, between its ends.
-    EndsInside,
-    /// The step leads through the end of a wall from one side of the walls that meet there to another.
-    SlipsThrough,
-}
-
-/// A step that breaks the small update condition: point k must be visible from point k-1, and point 0 from the anchor.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("trace {trace}, step {step}: the move from ({}, {}) to ({}, {}) {} wall {wall}, from ({}, {}) to ({}, {}); each point must be visible from the one before, the first from the anchor",
-    from.x, from.y, to.x, to.y, match kind {
-        ViolationKind::Crosses => "crosses",
-        ViolationKind::EndsInside => "ends inside",
-        ViolationKind::SlipsThrough => "slips between the walls at the end of",
-    }, ends[0].x, ends[0].y, ends[1].x, ends[1].y)]
-pub struct Violation {
-    /// The trace's number.
-    pub trace: u64,
-    /// The step: the move from point `step - 1` to point `step`; 0 is the move from the anchor to the first point.
-    pub step: usize,
-    /// What it does.
-    pub kind: ViolationKind,
-    /// Which wall, counted from 0.
-    pub wall: usize,
-    /// That wall's endpoints.
-    pub ends: [DVec2; 2],
-    /// Where the step starts.
-    pub from: DVec2,
-    /// Where it ends.
-    pub to: DVec2,
-}
-
-/// A trace that is ready to be evaluated.
-///
-/// Its points are those of the trace, with the anchor before them (unless the trace starts there) and a point added
-/// wherever a step passes through a vertex.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SettledTrace {
-    id: u64,
-    points: Vec<DVec2>,
-    /// Indices of the points that are not the ends of steps, ascending.
-    added: Vec<u32>,
-    /// The hairs by point index, ascending.
-    hairs: Vec<(u32, Hair)>,
-    violation: Option<Violation>,
-}
-
-impl SettledTrace {
-    /// The trace's number.
-    pub fn id(&self) -> u64 {
-        self.id
-    }
-
-    /// Where the points stand, those added included.
-    pub fn points(&self) -> &[DVec2] {
-        &self.points
-    }
-
-    /// Point `i` with its hair.
-    #[inline]
-    pub fn point(&self, i: usize) -> TracePoint {
-        let hair = match self.hairs.as_slice() {
-            [] => None,
-            hairs => hairs.binary_search_by_key(&(i as u32), |h| h.0).ok().map(|h| hairs[h].1),
-        };
-        TracePoint { at: self.points[i], hair }
-    }
-
-    /// The step to which the move to point `i` belongs; 0 is the move from the anchor to the trace's first point.
-    pub fn step(&self, i: usize) -> usize {
-        i - self.added.partition_point(|&a| (a as usize) < i)
-    }
-
-    /// Whether point `i` is a point of the trace, so that a step ends there.
-    #[inline]
-    pub fn ends_step(&self, i: usize) -> bool {
-        self.added.binary_search(&(i as u32)).is_err()
-    }
-
-    /// The number of the trace's steps: its points less one.
-    pub fn steps(&self) -> usize {
-        (self.points.len() - self.added.len()).saturating_sub(1)
-    }
-
-    /// The first step that breaks the small update condition, if one does.
-    pub fn violation(&self) -> Option<&Violation> {
-        self.violation.as_ref()
-    }
-}
 
 /// Checks `trace` against the model's walls and settles on which side it passes the vertices that it touches.
 ///
@@ -202,11 +109,14 @@ impl<'a> Settler<'a> {
             if from_b == 0.0 && between(u, v, b) && self.model.vertex_at(b).is_none() {
                 self.violate(step, ViolationKind::EndsInside, wall);
             }
-            if a == b || (from_a > 0.0 && from_b > 0.0) || (from_a < 0.0 && from_b < 0.0) {
+            if a == b {
+                continue;
+            }
+            if (from_a > 0.0 && from_b > 0.0) || (from_a < 0.0 && from_b < 0.0) {
                 continue;
             }
             let (to_u, to_v) = (orient(a, b, u), orient(a, b, v));
-            if from_a * from_b < 0.0 && to_u * to_v < 0.0 {
+            if opposite(from_a, from_b) && opposite(to_u, to_v) {
                 self.violate(step, ViolationKind::Crosses, wall);
             }
             passed
@@ -316,82 +226,7 @@ impl<'a> Settler<'a> {
     }
 }
 
-/// A stretch of settled points `first..end` at one place.
-struct Stay {
-    at: DVec2,
-    first: usize,
-    end: usize,
-    corner: Option<Corner>,
-}
-
-impl Stay {
-    fn slides_to(&self, next: &Stay) -> bool {
-        self.corner.as_ref().is_some_and(|c| c.has_wall_towards(next.at))
-    }
-}
-
-/// The side of the wall, as seen from corner `i` of a run looking back, on which the slide into it came: the mirror
-/// image of the side that it has looking forwards. `sides[i]` is that of the slide from corner i to i + 1.
-fn incoming(sides: &[Turn], i: usize) -> Turn {
-    if i > 0 { sides[i - 1].reversed() } else { Turn::Left }
-}
-
-fn outgoing(sides: &[Turn], i: usize) -> Turn {
-    sides.get(i).copied().unwrap_or(Turn::Left)
-}
-
-/// Chooses on which side of the walls each slide of a run of corners goes: one that connects at every corner; of those,
-/// the one on the side that the trace comes from and goes on to, without rounding tips needlessly; else the left.
-fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&Stay>) -> Vec<Turn> {
-    const SLIPS: u32 = 1 << 16;
-    const BOTH: [Turn; 2] = [Turn::Left, Turn::Right];
-    let slides = run.len() - 1;
-    if slides == 0 {
-        return Vec::new();
-    }
-    let corner = |i: usize| run[i].corner.as_ref().expect("a run is made of corners");
-    let cost_of = |i: usize, from: Way, to: Way| {
-        if corner(i).connects(from, to) { u32::from(corner(i).rounds_tip(from, to)) } else { SLIPS }
-    };
-    // Which side of the line from p to q the point lies on, against the side chosen.
-    let other_side = |p: DVec2, q: DVec2, point: DVec2, side: Turn| {
-        let turn = orient(p, q, point);
-        u32::from(if side == Turn::Left { turn < 0.0 } else { turn > 0.0 })
-    };
-    let enter = |side: Turn| {
-        before.map_or(0, |b| {
-            let (from, to) = (corner(0).way(b.at, Turn::Left), corner(0).way(run[1].at, side));
-            cost_of(0, from, to) + other_side(run[0].at, run[1].at, b.at, side)
-        })
-    };
-    let leave = |side: Turn| {
-        after.map_or(0, |a| {
-            let (from, to) =
-                (corner(slides).way(run[slides - 1].at, side.reversed()), corner(slides).way(a.at, Turn::Left));
-            cost_of(slides, from, to) + other_side(run[slides - 1].at, run[slides].at, a.at, side)
-        })
-    };
-    let turn = |i: usize, side: Turn, next: Turn| {
-        cost_of(i, corner(i).way(run[i - 1].at, side.reversed()), corner(i).way(run[i + 1].at, next))
-    };
-    // costs[k]: the least cost of slides k.. and the exit, for each side of slide k. Ties fall to the left.
-    let mut costs = vec![BOTH.map(leave); slides];
-    for k in (0..slides - 1).rev() {
-        costs[k] = BOTH.map(|side| {
-            BOTH.into_iter().zip(costs[k + 1]).map(|(next, rest)| turn(k + 1, side, next) + rest).min().unwrap_or(0)
-        });
-    }
-    let pick = |cost: [u32; 2]| if cost[0] <= cost[1] { Turn::Left } else { Turn::Right };
-    let mut sides: Vec<Turn> = Vec::with_capacity(slides);
-    for k in 0..slides {
-        let mut cost = costs[k];
-        for (c, side) in cost.iter_mut().zip(BOTH) {
-            *c += match sides.last() {
-                None => enter(side),
-                Some(&last) => turn(k, last, side),
-            };
-        }
-        sides.push(pick(cost));
-    }
-    sides
+/// Whether two numbers have opposite signs. Their product would say so too, but for tiny numbers it is zero.
+fn opposite(p: f64, q: f64) -> bool {
+    (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0)
 }

@@ -26,9 +26,9 @@ pub(crate) enum Kind {
     Winding,
     /// Random, 4 million units from the origin.
     Offset,
-    /// Random, scaled by 2^-200.
+    /// Random, scaled by 2^-380.
     Tiny,
-    /// Random, scaled by 2^200.
+    /// Random, scaled by 2^400.
     Huge,
 }
 
@@ -136,8 +136,8 @@ impl Recipe {
 
     fn scale(&self) -> f64 {
         match self.kind {
-            Kind::Tiny => 2f64.powi(-200),
-            Kind::Huge => 2f64.powi(200),
+            Kind::Tiny => 2f64.powi(-380),
+            Kind::Huge => 2f64.powi(400),
             _ => 1.0,
         }
     }

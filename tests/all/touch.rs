@@ -136,6 +136,17 @@ fn steps_that_break_the_rules_are_named() {
     assert_eq!(violation(&m, &[[0.0, 0.0], [-1.0, 1.0], [0.0, 2.0], [3.0, 2.0], [2.0, 0.0], [2.0, 2.0]]), None);
 }
 
+/// The product of two areas of the smallest scenes underflows to zero.
+#[test]
+fn steps_that_break_the_rules_are_named_at_every_scale() {
+    for exponent in [-440, -300, 0, 300, 490] {
+        let scaled = |p: P| p.map(|c| c * 2f64.powi(exponent));
+        let m = model(scaled([1.0, -1.0]), &BOX.map(|w| w.map(scaled)));
+        let points = [[1.0, -0.5], [0.5, -0.5], [1.0, 1.0]].map(scaled);
+        assert_eq!(violation(&m, &points), Some((2, ViolationKind::Crosses, 0)), "2^{exponent}");
+    }
+}
+
 /// Through walls a rope can turn more than half way round a wall's end, where the update's rules found events without end.
 #[test]
 fn a_trace_through_walls_comes_to_an_end() {

@@ -1,0 +1,99 @@
+//! A trace that is ready to be evaluated, and what can be wrong with one.
+
+use glam::DVec2;
+
+use crate::geometry::{Hair, TracePoint};
+
+/// What a trace does that a rope among solid walls cannot follow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ViolationKind {
+    /// The step crosses a wall.
+    Crosses,
+    /// The step ends inside a wall, between its ends.
+    EndsInside,
+    /// The step leads through the end of a wall from one side of the walls that meet there to another.
+    SlipsThrough,
+}
+
+/// A step that breaks the small update condition: point k must be visible from point k-1, and point 0 from the anchor.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("trace {trace}, step {step}: the move from ({}, {}) to ({}, {}) {} wall {wall}, from ({}, {}) to ({}, {}); each point must be visible from the one before, the first from the anchor",
+    from.x, from.y, to.x, to.y, match kind {
+        ViolationKind::Crosses => "crosses",
+        ViolationKind::EndsInside => "ends inside",
+        ViolationKind::SlipsThrough => "slips between the walls at the end of",
+    }, ends[0].x, ends[0].y, ends[1].x, ends[1].y)]
+pub struct Violation {
+    /// The trace's number.
+    pub trace: u64,
+    /// The step: the move from point `step - 1` to point `step`; 0 is the move from the anchor to the first point.
+    pub step: usize,
+    /// What it does.
+    pub kind: ViolationKind,
+    /// Which wall, counted from 0.
+    pub wall: usize,
+    /// That wall's endpoints.
+    pub ends: [DVec2; 2],
+    /// Where the step starts.
+    pub from: DVec2,
+    /// Where it ends.
+    pub to: DVec2,
+}
+
+/// A trace that is ready to be evaluated.
+///
+/// Its points are those of the trace, with the anchor before them (unless the trace starts there) and a point added
+/// wherever a step passes through a vertex.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SettledTrace {
+    pub(super) id: u64,
+    pub(super) points: Vec<DVec2>,
+    /// Indices of the points that are not the ends of steps, ascending.
+    pub(super) added: Vec<u32>,
+    /// The hairs by point index, ascending.
+    pub(super) hairs: Vec<(u32, Hair)>,
+    pub(super) violation: Option<Violation>,
+}
+
+impl SettledTrace {
+    /// The trace's number.
+    pub fn id(&self) -> u64 {
+        self.id
+    }
+
+    /// Where the points stand, those added included.
+    pub fn points(&self) -> &[DVec2] {
+        &self.points
+    }
+
+    /// Point `i` with its hair.
+    #[inline]
+    pub fn point(&self, i: usize) -> TracePoint {
+        let hair = match self.hairs.as_slice() {
+            [] => None,
+            hairs => hairs.binary_search_by_key(&(i as u32), |h| h.0).ok().map(|h| hairs[h].1),
+        };
+        TracePoint { at: self.points[i], hair }
+    }
+
+    /// The step to which the move to point `i` belongs; 0 is the move from the anchor to the trace's first point.
+    pub fn step(&self, i: usize) -> usize {
+        i - self.added.partition_point(|&a| (a as usize) < i)
+    }
+
+    /// Whether point `i` is a point of the trace, so that a step ends there.
+    #[inline]
+    pub fn ends_step(&self, i: usize) -> bool {
+        self.added.binary_search(&(i as u32)).is_err()
+    }
+
+    /// The number of the trace's steps: its points less one.
+    pub fn steps(&self) -> usize {
+        (self.points.len() - self.added.len()).saturating_sub(1)
+    }
+
+    /// The first step that breaks the small update condition, if one does.
+    pub fn violation(&self) -> Option<&Violation> {
+        self.violation.as_ref()
+    }
+}
