@@ -1,6 +1,6 @@
 //! `tautline eval`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::anyhow;
@@ -61,13 +61,7 @@ enum EngineName {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let outputs = || [&args.out, &args.events].into_iter().flatten();
-    outputs().try_for_each(|path| check_output(path))?;
-    if let (Some(out), Some(events)) = (&args.out, &args.events)
-        && out == events
-    {
-        return Err(Failure::input(anyhow!("--out and --events name the same file, {}", out.display())));
-    }
+    check_outputs(args)?;
     interrupt::listen()?;
     let start = Instant::now();
     let model = args.input.model()?;
@@ -89,6 +83,34 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     let summary = Summary::new(&args.input.name(), &model, (engine.name(), on), &records, prepared, evaluated);
     if args.json { print_json(&summary.json()) } else { print(&summary.table(args.out.is_none())) }
+}
+
+/// Refuses outputs that cannot be written, and those that would replace another file of this run.
+fn check_outputs(args: &Args) -> Result<(), Failure> {
+    [&args.out, &args.events].into_iter().flatten().try_for_each(|path| check_output(path))?;
+    let files = [
+        ("--scene", &args.input.scene),
+        ("--traces", &args.input.traces),
+        ("--out", &args.out),
+        ("--events", &args.events),
+    ];
+    for (i, (output, path)) in files.iter().enumerate().skip(2) {
+        let Some(path) = path else { continue };
+        let same = |other: &&(_, &Option<PathBuf>)| other.1.as_deref().is_some_and(|o| place(o) == place(path));
+        if let Some((other, _)) = files[..i].iter().find(same) {
+            return Err(Failure::input(anyhow!("{other} and {output} name the same file, {}", path.display())));
+        }
+    }
+    Ok(())
+}
+
+/// The path without links and detours, so that equal places have equal paths; the file need not be there yet.
+fn place(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        path.file_name().map_or(folder.clone(), |name| folder.join(name))
+    })
 }
 
 /// The engine asked for, and in words what it runs on; says on stderr what was chosen where there was a choice.

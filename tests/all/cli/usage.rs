@@ -23,6 +23,19 @@ fn outputs_must_be_files_of_a_known_kind() {
 }
 
 #[test]
+fn no_output_replaces_another_file_of_the_same_run() {
+    let folder = Folder::hand_made();
+    let absolute = folder.path("r.jsonl");
+    for events in ["r.jsonl", "./r.jsonl", absolute.to_str().unwrap()] {
+        folder.refused(2, &EVAL.replace("e.csv", events), &["--out and --events name the same file", "r.jsonl"]);
+    }
+    // Neither is there yet.
+    folder.refused(2, &EVAL.replace("r.jsonl", "new.csv").replace("e.csv", "./new.csv"), &["the same file", "new.csv"]);
+    folder.refused(2, &EVAL.replace("e.csv", "./t.csv"), &["--traces and --events name the same file", "t.csv"]);
+    folder.refused(2, &EVAL.replace("r.jsonl", "t.csv"), &["--traces and --out name the same file", "t.csv"]);
+}
+
+#[test]
 fn unknown_arguments_are_answered_with_the_known_ones() {
     let folder = Folder::hand_made();
     let engines = ["abacus", "--engine", "auto", "gpu", "cpu", "reference", "funnel", "note"];
