@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::anyhow;
 use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Note, Reference};
 use tautline::gpu::{AdapterChoice, Gpu as Adapter, GpuError};
-use tautline::output::{EventWriter, ResultWriter, check_output};
+use tautline::output::{EventWriter, ResultWriter, WholeFile, check_output};
 use tautline::rope::TraceRecord;
 use tautline::scene::Model;
 
@@ -61,8 +61,12 @@ enum EngineName {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    check_outputs(args)?;
     interrupt::listen()?;
+    // Trying whether a file can be written makes one for a moment.
+    let writing = Writing::begin();
+    writing.check()?;
+    check_outputs(args)?;
+    writing.end()?;
     let start = Instant::now();
     let model = args.input.model()?;
     if model.scene().dropped() > 0 {
@@ -156,6 +160,7 @@ fn engine(args: &Args, model: &Model) -> Result<(Box<dyn Engine>, String), Failu
 /// Writes what was asked for; files appear under their names only when they are whole.
 fn write(args: &Args, model: &Model, records: &[TraceRecord]) -> Result<(), Failure> {
     let writing = Writing::begin();
+    writing.check()?;
     let mut out = args.out.as_deref().map(ResultWriter::create).transpose()?;
     let mut events = args.events.as_deref().map(EventWriter::create).transpose()?;
     for record in records {
@@ -163,6 +168,9 @@ fn write(args: &Args, model: &Model, records: &[TraceRecord]) -> Result<(), Fail
         out.as_mut().map_or(Ok(()), |w| w.write(record))?;
         events.as_mut().map_or(Ok(()), |w| w.write(model.vertices(), record))?;
     }
-    out.map_or(Ok(()), ResultWriter::finish)?;
-    Ok(events.map_or(Ok(()), EventWriter::finish)?)
+    // Neither appears before both are whole.
+    let out = out.map(ResultWriter::complete).transpose()?;
+    let events = events.map(EventWriter::complete).transpose()?;
+    writing.check()?;
+    Ok([out, events].into_iter().flatten().try_for_each(WholeFile::finish)?)
 }
