@@ -67,7 +67,7 @@ fn the_number_of_threads_changes_nothing() {
     let write = |threads: &str| {
         let mut command =
             folder.command("eval --scene s.geojson --traces t.csv --engine cpu --out r.csv --events e.csv");
-        assert_eq!(Finished::from(command.env("RAYON_NUM_THREADS", threads)).code, Some(0));
+        assert_eq!(Finished::of(command.env("RAYON_NUM_THREADS", threads)).code, Some(0));
         ["r.csv", "e.csv"].map(|name| folder.read(name))
     };
     assert!(write("1") == write("7"));

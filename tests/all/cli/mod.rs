@@ -1,6 +1,7 @@
 //! The program as its users run it: arguments and files in; files, messages and exit codes out.
 
 mod engines;
+mod process;
 mod reports;
 mod results;
 mod scenes;
@@ -10,8 +11,8 @@ mod usage;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::PathBuf;
+use std::process::{Command, Output};
 
 use assert_cmd::cargo::cargo_bin;
 use serde_json::json;
@@ -110,13 +111,13 @@ impl Folder {
 
     /// The program in this folder with `args`, which are separated by spaces.
     fn command(&self, args: &str) -> Command {
-        let mut command = program(self.0.path());
-        command.args(args.split_whitespace());
+        let mut command = Command::new(cargo_bin!("tautline"));
+        command.current_dir(self.0.path()).args(args.split_whitespace());
         command
     }
 
     fn run(&self, args: &str) -> Finished {
-        Finished::from(&mut self.command(args))
+        Finished::of(&mut self.command(args))
     }
 
     /// Runs a command that must succeed.
@@ -136,10 +137,9 @@ impl Folder {
 }
 
 impl Finished {
-    fn from(command: &mut Command) -> Self {
-        let output = command.output().unwrap();
-        let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-        Finished { code: output.status.code(), stdout, stderr }
+    /// Runs `command` to its end.
+    fn of(command: &mut Command) -> Self {
+        command.output().unwrap().into()
     }
 
     fn has_failed(&self, code: i32, what: &str, parts: &[&str]) {
@@ -153,9 +153,9 @@ impl Finished {
     }
 }
 
-/// The program, to be run in `folder`.
-fn program(folder: &Path) -> Command {
-    let mut command = Command::new(cargo_bin!("tautline"));
-    command.current_dir(folder);
-    command
+impl From<Output> for Finished {
+    fn from(output: Output) -> Self {
+        let [stdout, stderr] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        Finished { code: output.status.code(), stdout, stderr }
+    }
 }
