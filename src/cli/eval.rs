@@ -73,7 +73,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         eprintln!("note: {} walls of zero length were dropped", model.scene().dropped());
     }
     let traces = args.input.read_traces(&model)?;
-    let settled = settle_all(&model, traces, args.on_violation)?;
+    let settled = settle_all(&args.input, &model, traces, args.on_violation)?;
     let (mut engine, on) = engine(args, &model)?;
     let prepared = start.elapsed();
 

@@ -93,7 +93,7 @@ fn check_counts_what_is_there() {
     }
     let shown = folder.done("check --scene s.geojson --traces t.csv").stdout;
     assert!(shown.contains("s.geojson: 2 walls, 4 vertices, anchor (0, 0)\n"), "{shown}");
-    assert!(shown.contains("4, 12 steps"), "{shown}");
+    assert!(shown.contains("4, 12 steps; 0 of the traces cross walls\n"), "{shown}");
     let shown = folder.done("check --scene z.geojson --anchor 3,0").stdout;
     assert!(shown.contains("1 walls, 2 vertices, anchor (3, 0)\n"), "{shown}");
     assert!(shown.contains("1 walls of zero length were dropped\n") && !shown.contains("traces"), "{shown}");
@@ -105,7 +105,7 @@ fn check_counts_what_is_there() {
 fn check_refuses_what_eval_refuses() {
     let folder = Folder::hand_made();
     folder.write("v.csv", "trace,x,y\n3,1,0\n3,5,0\n");
-    folder.refused(2, "check --scene s.geojson --traces v.csv", &["trace 3, step 1: ", "crosses wall 0"]);
+    folder.refused(2, "check --scene s.geojson --traces v.csv", &["v.csv: trace 3, step 1: ", "crosses wall 0"]);
     folder.refused(2, "check --scene s.wkb", &["s.wkb", ".geojson, .json, .map"]);
     folder.refused(2, "check --traces t.csv", &["--traces needs --scene"]);
     folder.refused(2, "check --scene s.geojson --anchor 3,1", &["inside wall 0"]);

@@ -89,11 +89,16 @@ const TRACES_TEXT: &[u8] = super::TRACES.as_bytes();
 #[test]
 fn steps_through_walls_name_trace_step_and_wall() {
     let wall = "wall 0, from (3, 4) to (3, -4)";
-    let crosses = ["trace 3, step 2: the move from (1, 0) to (5, 0) crosses", wall, "visible", "--on-violation flag"];
+    let crosses = [
+        "error: t.csv: trace 3, step 2: the move from (1, 0) to (5, 0) crosses",
+        wall,
+        "visible",
+        "--on-violation flag",
+    ];
     refused("trace,x,y\n2,0,1\n3,0,0\n3,1,0\n3,5,0\n3,1,0\n", &crosses);
-    let inside = ["trace 0, step 1: the move from (1, 0) to (3, 1) ends inside", wall];
+    let inside = ["t.csv: trace 0, step 1: the move from (1, 0) to (3, 1) ends inside", wall];
     refused("trace,x,y\n0,1,0\n0,3,1\n", &inside);
-    let hidden = ["trace 0, step 0: the move from (0, 0) to (5, 1) crosses", wall, "the first from the anchor"];
+    let hidden = ["t.csv: trace 0, step 0: the move from (0, 0) to (5, 1) crosses", wall, "the first from the anchor"];
     refused("trace,x,y\n0,5,1\n0,6,1\n", &hidden);
     // The first of several, by trace.
     refused("trace,x,y\n1,1,0\n1,2,0\n4,5,1\n8,5,1\n", &["trace 4, step 0"]);
@@ -124,7 +129,7 @@ fn a_violation_that_is_flagged_leaves_the_others_as_they_are() {
     let done = folder.done(&format!("{EVAL} --on-violation flag --engine reference"));
     let warnings: Vec<_> = done.stderr.lines().collect();
     assert_eq!(warnings.len(), 1, "{}", done.stderr);
-    assert!(warnings[0].starts_with("warning: trace 6, step 1: the move from (1, 0) to (5, 0) crosses wall 0"));
+    assert!(warnings[0].starts_with("warning: t.csv: trace 6, step 1: the move from (1, 0) to (5, 0) crosses wall 0"));
     assert!(done.stdout.contains("crossing 1 traces"), "{}", done.stdout);
     let text = folder.text("r.jsonl");
     let (flagged, others): (Vec<_>, Vec<_>) = text.lines().partition(|l| l.starts_with(r#"{"trace":6,"#));
