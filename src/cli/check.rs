@@ -24,7 +24,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let scene = model.scene();
     let settled = match args.input.traces {
         None if args.input.scene.is_some() => None,
-        _ => Some(settle_all(&model, args.input.read_traces(&model)?, args.on_violation)?),
+        _ => Some(settle_all(&args.input, &model, args.input.read_traces(&model)?, args.on_violation)?),
     };
     let anchor = model.anchor();
     let counts = settled.map(|settled| {
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         text += &format!("        {} walls of zero length were dropped\n", scene.dropped());
     }
     if let Some((traces, steps, violations)) = counts {
-        text += &format!("traces  {traces}, {steps} steps, {violations} of them crossing walls\n");
+        text += &format!("traces  {traces}, {steps} steps; {violations} of the traces cross walls\n");
     }
     print(&text)
 }

@@ -1,12 +1,12 @@
 //! `tautline eval`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::anyhow;
 use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Note, Reference};
 use tautline::gpu::{AdapterChoice, Gpu as Adapter, GpuError};
-use tautline::output::{EventWriter, ResultWriter, check_output};
+use tautline::output::{EventWriter, ResultWriter, WholeFile, check_output};
 use tautline::rope::TraceRecord;
 use tautline::scene::Model;
 
@@ -61,21 +61,19 @@ enum EngineName {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let outputs = || [&args.out, &args.events].into_iter().flatten();
-    outputs().try_for_each(|path| check_output(path))?;
-    if let (Some(out), Some(events)) = (&args.out, &args.events)
-        && out == events
-    {
-        return Err(Failure::input(anyhow!("--out and --events name the same file, {}", out.display())));
-    }
     interrupt::listen()?;
+    // Trying whether a file can be written makes one for a moment.
+    let writing = Writing::begin();
+    writing.check()?;
+    check_outputs(args)?;
+    writing.end()?;
     let start = Instant::now();
     let model = args.input.model()?;
     if model.scene().dropped() > 0 {
         eprintln!("note: {} walls of zero length were dropped", model.scene().dropped());
     }
     let traces = args.input.read_traces(&model)?;
-    let settled = settle_all(&model, traces, args.on_violation)?;
+    let settled = settle_all(&args.input, &model, traces, args.on_violation)?;
     let (mut engine, on) = engine(args, &model)?;
     let prepared = start.elapsed();
 
@@ -89,6 +87,34 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     let summary = Summary::new(&args.input.name(), &model, (engine.name(), on), &records, prepared, evaluated);
     if args.json { print_json(&summary.json()) } else { print(&summary.table(args.out.is_none())) }
+}
+
+/// Refuses outputs that cannot be written, and those that would replace another file of this run.
+fn check_outputs(args: &Args) -> Result<(), Failure> {
+    [&args.out, &args.events].into_iter().flatten().try_for_each(|path| check_output(path))?;
+    let files = [
+        ("--scene", &args.input.scene),
+        ("--traces", &args.input.traces),
+        ("--out", &args.out),
+        ("--events", &args.events),
+    ];
+    for (i, (output, path)) in files.iter().enumerate().skip(2) {
+        let Some(path) = path else { continue };
+        let same = |other: &&(_, &Option<PathBuf>)| other.1.as_deref().is_some_and(|o| place(o) == place(path));
+        if let Some((other, _)) = files[..i].iter().find(same) {
+            return Err(Failure::input(anyhow!("{other} and {output} name the same file, {}", path.display())));
+        }
+    }
+    Ok(())
+}
+
+/// The path without links and detours, so that equal places have equal paths; the file need not be there yet.
+fn place(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        path.file_name().map_or(folder.clone(), |name| folder.join(name))
+    })
 }
 
 /// The engine asked for, and in words what it runs on; says on stderr what was chosen where there was a choice.
@@ -134,6 +160,7 @@ fn engine(args: &Args, model: &Model) -> Result<(Box<dyn Engine>, String), Failu
 /// Writes what was asked for; files appear under their names only when they are whole.
 fn write(args: &Args, model: &Model, records: &[TraceRecord]) -> Result<(), Failure> {
     let writing = Writing::begin();
+    writing.check()?;
     let mut out = args.out.as_deref().map(ResultWriter::create).transpose()?;
     let mut events = args.events.as_deref().map(EventWriter::create).transpose()?;
     for record in records {
@@ -141,6 +168,9 @@ fn write(args: &Args, model: &Model, records: &[TraceRecord]) -> Result<(), Fail
         out.as_mut().map_or(Ok(()), |w| w.write(record))?;
         events.as_mut().map_or(Ok(()), |w| w.write(model.vertices(), record))?;
     }
-    out.map_or(Ok(()), ResultWriter::finish)?;
-    Ok(events.map_or(Ok(()), EventWriter::finish)?)
+    // Neither appears before both are whole.
+    let out = out.map(ResultWriter::complete).transpose()?;
+    let events = events.map(EventWriter::complete).transpose()?;
+    writing.check()?;
+    Ok([out, events].into_iter().flatten().try_for_each(WholeFile::finish)?)
 }

@@ -8,7 +8,6 @@ use tautline::engine::EngineError;
 use tautline::gpu::GpuError;
 use tautline::output::WriteError;
 use tautline::scene::AnchorError;
-use tautline::trace::Violation;
 
 /// A failed command.
 #[derive(Debug)]
@@ -53,13 +52,6 @@ impl From<ReadError> for Failure {
 impl From<AnchorError> for Failure {
     fn from(error: AnchorError) -> Self {
         Failure::input(error.into())
-    }
-}
-
-impl From<Violation> for Failure {
-    fn from(error: Violation) -> Self {
-        let hint = "; --on-violation flag marks such traces and goes on";
-        Failure::input(anyhow::anyhow!("{error}{hint}"))
     }
 }
 

@@ -86,15 +86,24 @@ pub(crate) enum OnViolation {
     Flag,
 }
 
-/// Settles all traces, on all cores, and consumes them.
-pub(crate) fn settle_all(model: &Model, traces: Vec<Trace>, rule: OnViolation) -> Result<Vec<SettledTrace>, Failure> {
+/// Settles all traces, on all cores, and consumes them; `input` is where they come from.
+pub(crate) fn settle_all(
+    input: &SceneArgs,
+    model: &Model,
+    traces: Vec<Trace>,
+    rule: OnViolation,
+) -> Result<Vec<SettledTrace>, Failure> {
+    let file = input.traces.as_deref().map_or(String::new(), |p| format!("{}: ", p.display()));
     let settled: Vec<SettledTrace> = traces.into_par_iter().map(|trace| settle(model, &trace)).collect();
     let violations: Vec<_> = settled.iter().filter_map(|t| t.violation()).collect();
     match (violations.first(), rule) {
-        (Some(&&first), OnViolation::Error) => Err(first.into()),
+        (Some(first), OnViolation::Error) => {
+            let hint = "; --on-violation flag marks such traces and goes on";
+            Err(Failure::input(anyhow!("{file}{first}{hint}")))
+        }
         (Some(_), OnViolation::Flag) => {
             const SHOWN: usize = 5;
-            violations.iter().take(SHOWN).for_each(|v| eprintln!("warning: {v}"));
+            violations.iter().take(SHOWN).for_each(|v| eprintln!("warning: {file}{v}"));
             if violations.len() > SHOWN {
                 eprintln!("warning: and {} more traces that cross walls", violations.len() - SHOWN);
             }

@@ -19,7 +19,8 @@ pub(crate) fn listen() -> Result<(), Failure> {
     ctrlc::set_handler(heard).map_err(|e| Failure::internal(e.into()))
 }
 
-/// While one of these lives, Ctrl-C waits for [`check`].
+/// While one of these lives, Ctrl-C waits for [`check`](Writing::check). One that has just begun must be checked before
+/// a file is made: Ctrl-C may have come a moment earlier.
 pub(crate) struct Writing;
 
 impl Writing {
@@ -31,6 +32,12 @@ impl Writing {
     /// An error once Ctrl-C was pressed, so that half-written files are dropped.
     pub(crate) fn check(&self) -> Result<(), Failure> {
         if STOPPED.load(Ordering::SeqCst) { Err(Failure::interrupted()) } else { Ok(()) }
+    }
+
+    /// Ends it when all files are gone again: an error if Ctrl-C was pressed meanwhile.
+    pub(crate) fn end(self) -> Result<(), Failure> {
+        WRITING.store(false, Ordering::SeqCst);
+        self.check()
     }
 }
 

@@ -67,9 +67,19 @@ impl ResultWriter {
     ///
     /// What the operating system says, or that an earlier write failed.
     pub fn finish(self) -> Result<(), WriteError> {
+        self.complete()?.finish()
+    }
+
+    /// Writes the rest and returns the whole file, to be put in its place by [`WholeFile::finish`]: for files that
+    /// must appear together or not at all.
+    ///
+    /// # Errors
+    ///
+    /// What the operating system says, or that an earlier write failed.
+    pub fn complete(self) -> Result<WholeFile, WriteError> {
         match self.0 {
-            Rows::Jsonl(file) | Rows::Csv(file) => file.finish(),
-            Rows::Parquet(table) => table.finish(),
+            Rows::Jsonl(file) | Rows::Csv(file) => file.complete(),
+            Rows::Parquet(table) => table.complete(),
         }
     }
 }

@@ -54,11 +54,11 @@ impl<C: Columns> Table<C> {
         self.writer.write(&batch).and_then(|()| self.writer.flush()).map_err(|e| error(&self.path, e))
     }
 
-    pub(super) fn finish(mut self) -> Result<(), WriteError> {
+    pub(super) fn complete(mut self) -> Result<WholeFile, WriteError> {
         if self.columns.len() > 0 {
             self.flush()?;
         }
-        self.writer.into_inner().map_err(|e| error(&self.path, e))?.finish()
+        self.writer.into_inner().map_err(|e| error(&self.path, e))?.complete()
     }
 }
 
@@ -209,7 +209,7 @@ mod tests {
         let expected = format!("cannot write {}: No space left on device (os error 28)", path.display());
 
         let few = Table::<ResultColumns>::new(&path, onto_full()).unwrap();
-        assert_eq!(few.finish().unwrap_err().to_string(), expected);
+        assert_eq!(few.complete().unwrap_err().to_string(), expected);
 
         let mut many = Table::<EventColumns>::new(&path, onto_full()).unwrap();
         let event = record(1).events[0];
@@ -218,7 +218,7 @@ mod tests {
             many.flush_if_full().err()
         });
         assert_eq!(failed.unwrap().to_string(), expected);
-        assert!(many.finish().is_err());
+        assert!(many.complete().is_err());
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }

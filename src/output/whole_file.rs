@@ -69,6 +69,12 @@ impl WholeFile {
         Ok(WholeFile { out, temporary, path: path.to_owned(), target, failed: false })
     }
 
+    /// Writes what is still buffered, so that all that can be left to fail is taking the new name.
+    pub(super) fn complete(mut self) -> Result<Self, WriteError> {
+        self.flush().map_err(|cause| self.error(cause))?;
+        Ok(self)
+    }
+
     /// Puts the file in its place.
     ///
     /// # Errors

@@ -153,7 +153,7 @@ impl Rope {
         let back = self.taut_end(a).at - a;
         // Scaled first: the length of a tiny vector must not lose digits to underflow.
         let size = back.abs().max_element();
-        (size > 0.0).then(|| (back / size).normalize())
+        (size > 0.0).then(|| back / size / (back / size).length())
     }
 
     /// The taut rope to the free end `a`: the contacts without those passed straight, and without the pivot if `a`

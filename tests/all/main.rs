@@ -1,6 +1,7 @@
 //! All integration tests, in one binary.
 
 mod batch;
+mod cli;
 mod golden;
 mod random;
 mod scenes;

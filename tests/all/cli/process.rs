@@ -1,0 +1,160 @@
+//! What happens to the process from outside: a full disk, Ctrl-C, a reader that has seen enough.
+
+use std::process::Stdio;
+
+use super::{Finished, Folder};
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_fault() {
+    let folder = Folder::hand_made();
+    let eval = "eval --scene s.geojson --traces t.csv --engine reference";
+    for args in [eval, &format!("{eval} --json"), "check --scene s.geojson", "adapters", "--help", "--version"] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let finished = Finished::of(folder.command(args).stdout(Stdio::from(writer)));
+        assert_eq!((finished.code, finished.stderr.as_str()), (Some(0), ""), "{args}");
+    }
+}
+
+#[cfg(unix)]
+mod unix {
+    use std::fs::{DirEntry, File};
+    use std::process::{Child, Command, Stdio};
+    use std::sync::mpsc::{RecvTimeoutError, channel};
+    use std::time::Duration;
+
+    use super::super::{EVAL, Finished, Folder};
+
+    /// Runs `eval` in a shell that lets no file grow beyond 2 KiB (4 KiB where the shell counts otherwise): growing
+    /// further fails as on a full disk.
+    fn eval_on_full_disk(folder: &Folder, args: &[&str]) -> Finished {
+        let program = folder.command("");
+        let mut shell = Command::new("sh");
+        shell.current_dir(folder.path("")).args(["-c", r#"trap '' XFSZ; ulimit -f 4; exec "$0" "$@""#]);
+        shell.arg(program.get_program()).args(["eval", "--scene", "s.geojson", "--traces", "t.csv", "--engine", "cpu"]);
+        Finished::of(shell.args(args))
+    }
+
+    #[test]
+    fn a_full_disk_is_reported_and_changes_nothing() {
+        let folder = Folder::floor_plan(60, 300);
+        let outputs = [
+            ["--out", "r.jsonl"],
+            ["--out", "r.csv"],
+            ["--out", "r.parquet"],
+            ["--events", "e.jsonl"],
+            ["--events", "e.csv"],
+            ["--events", "e.parquet"],
+        ];
+        outputs.iter().for_each(|[_, name]| folder.write(name, "old"));
+        let before = folder.files();
+        for args @ [_, name] in outputs {
+            let expected = format!("error: cannot write {name}: File too large");
+            eval_on_full_disk(&folder, &args).has_failed(1, name, &[&expected]);
+            assert!(folder.files() == before, "{name}: there are {:?}", folder.files().keys());
+        }
+    }
+
+    #[test]
+    fn results_for_whose_events_no_room_is_left_do_not_appear() {
+        let folder = Folder::hand_made();
+        // There and back behind the first wall: one result, 200 events.
+        folder.write("t.csv", format!("trace,x,y\n{}", "0,5,12\n0,5,4\n".repeat(100)));
+        folder.write("r.csv", "old");
+        let before = folder.files();
+        let finished = eval_on_full_disk(&folder, &["--out", "r.csv", "--events", "e.csv"]);
+        finished.has_failed(1, "both", &["error: cannot write e.csv: File too large"]);
+        assert!(folder.files() == before, "there are {:?}", folder.files().keys());
+        // The results alone have room.
+        assert_eq!(eval_on_full_disk(&folder, &["--out", "r.csv"]).code, Some(0));
+    }
+
+    /// Starts the program with its output piped.
+    fn start(folder: &Folder, args: &str) -> Child {
+        folder.command(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    }
+
+    fn interrupt(child: &Child) {
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    }
+
+    fn finish(child: Child) -> Finished {
+        child.wait_with_output().unwrap().into()
+    }
+
+    /// Fails if the program has ended before it was interrupted.
+    fn assert_runs(child: &mut Child) {
+        let status = child.try_wait().unwrap();
+        assert!(status.is_none(), "ended with {status:?} already");
+    }
+
+    #[test]
+    fn ctrl_c_while_traces_are_read_leaves_everything_as_it_was() {
+        let folder = Folder::hand_made();
+        let before = folder.files();
+        let pipe = folder.path("pipe.csv");
+        assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let mut child = start(&folder, &EVAL.replace("t.csv", "pipe.csv"));
+        // The pipe opens for writing when the program opens it for reading, and then it waits for rows.
+        let (opened, waiting) = channel();
+        std::thread::spawn(move || opened.send(File::options().write(true).open(pipe).unwrap()));
+        let held = loop {
+            match waiting.recv_timeout(Duration::from_millis(20)) {
+                Ok(file) => break file,
+                Err(RecvTimeoutError::Timeout) => assert_runs(&mut child),
+                Err(RecvTimeoutError::Disconnected) => panic!("the pipe cannot be opened"),
+            }
+        };
+        interrupt(&child);
+        finish(child).has_failed(130, "reading", &["error: stopped; nothing was written"]);
+        drop(held);
+        assert!(folder.files() == before, "there are {:?}", folder.files().keys());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn ctrl_c_during_a_long_evaluation_leaves_everything_as_it_was() {
+        let folder = Folder::hand_made();
+        let before = folder.files();
+        let mut child = start(&folder, "eval --engine reference --out r.jsonl --events e.csv");
+        // SIGINT is bit 1 of the signals that the program handles.
+        let path = format!("/proc/{}/status", child.id());
+        let handles = || {
+            let status = std::fs::read_to_string(&path).unwrap();
+            let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+            u64::from_str_radix(caught.trim(), 16).unwrap() & 2 != 0
+        };
+        while !handles() {
+            assert_runs(&mut child);
+        }
+        interrupt(&child);
+        finish(child).has_failed(130, "evaluating", &["error: stopped; nothing was written"]);
+        assert!(folder.files() == before, "there are {:?}", folder.files().keys());
+    }
+
+    #[test]
+    fn ctrl_c_while_files_are_written_leaves_all_or_nothing() {
+        let folder = Folder::hand_made();
+        let before = folder.files();
+        let mut child = start(&folder, "eval --engine cpu --out r.jsonl --events e.jsonl");
+        // The new file is there under a passing name, with something in it.
+        let grows = |entry: DirEntry| {
+            entry.file_name().to_string_lossy().starts_with(".r.jsonl.") && entry.metadata().is_ok_and(|m| m.len() > 0)
+        };
+        while child.try_wait().unwrap().is_none() {
+            if std::fs::read_dir(folder.path("")).unwrap().any(|entry| grows(entry.unwrap())) {
+                interrupt(&child);
+                break;
+            }
+        }
+        let finished = finish(child);
+        if finished.code == Some(0) {
+            // It was too late.
+            assert_eq!(folder.text("r.jsonl").lines().count(), 4000);
+            assert_eq!(folder.files().len(), before.len() + 1);
+        } else {
+            finished.has_failed(130, "writing", &["error: stopped; nothing was written"]);
+            assert!(folder.files() == before, "there are {:?}", folder.files().keys());
+        }
+    }
+}

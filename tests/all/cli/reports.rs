@@ -1,0 +1,153 @@
+//! What the commands print: tables for people, one JSON document for programs, and the rest on stderr.
+
+use serde_json::{Value, json};
+
+use super::Folder;
+
+/// Stdout, which must be one JSON document and nothing else.
+fn report(folder: &Folder, args: &str) -> Value {
+    serde_json::from_str(&folder.done(args).stdout).unwrap()
+}
+
+#[test]
+fn eval_alone_shows_the_example() {
+    let folder = Folder::new();
+    let shown = folder.done("eval");
+    for part in [
+        "the built-in floor plan: 467 walls with 503 ends, anchor (24.3, 9.2)\n",
+        "traces   4,000, 2,000,000 steps\n",
+        "rope length at the end",
+        "steps/s\n",
+        "--out FILE writes",
+    ] {
+        assert!(shown.stdout.contains(part), "{part:?} is missing in\n{}", shown.stdout);
+    }
+    // What was chosen, on one line: nobody asked for an engine.
+    assert!(shown.stderr.starts_with("engine: ") && shown.stderr.lines().count() == 1, "{}", shown.stderr);
+    assert!(folder.files().is_empty());
+}
+
+#[test]
+fn long_work_shows_no_progress_where_nobody_watches() {
+    // The example takes the reference seconds; a bar would show after one.
+    let shown = Folder::new().done("eval --engine reference");
+    assert!(shown.stdout.contains("engine   reference on one thread\n"), "{}", shown.stdout);
+    assert_eq!(shown.stderr, "");
+}
+
+#[test]
+fn eval_sums_up_in_a_table() {
+    let shown = Folder::hand_made().done("eval --scene s.geojson --traces t.csv --engine reference").stdout;
+    for line in [
+        "scene    s.geojson: 2 walls with 4 ends, anchor (0, 0)",
+        "traces   4, 12 steps",
+        "events   4 wraps, 1 unwraps, 0.4167 a step",
+        "  over all traces                   mean      median         max",
+        "  rope length at the end           10.25       9.500       22.00",
+        "  longest rope on the way          12.25       13.00       23.00",
+        "  contacts at the end             0.7500      0.5000       2.000",
+        "  most contacts on the way         1.000       1.000       2.000",
+    ] {
+        assert!(shown.lines().any(|l| l == line), "{line:?} is missing in\n{shown}");
+    }
+}
+
+#[test]
+fn eval_sums_up_in_json() {
+    let folder = Folder::hand_made();
+    let report = report(&folder, "eval --scene s.geojson --traces t.csv --json --engine gpu --adapter software");
+    let scene = json!({"name": "s.geojson", "walls": 2, "vertices": 4, "anchor": [0.0, 0.0]});
+    for (field, expected) in [
+        ("scene", scene),
+        ("engine", json!("gpu")),
+        ("version", json!(env!("CARGO_PKG_VERSION"))),
+        ("traces", json!(4)),
+        ("steps", json!(12)),
+        ("violations", json!(0)),
+        ("wraps", json!(4)),
+        ("unwraps", json!(1)),
+        ("length", json!({"mean": 10.25, "median": 9.5, "max": 22.0})),
+        ("max_length", json!({"mean": 12.25, "median": 13.0, "max": 23.0})),
+        ("depth", json!({"mean": 0.75, "median": 0.5, "max": 2.0})),
+        ("max_depth", json!({"mean": 1.0, "median": 1.0, "max": 2.0})),
+    ] {
+        assert_eq!(report[field], expected, "{field}");
+    }
+    assert!(report["on"].as_str().unwrap().contains("software"), "{}", report["on"]);
+    assert!(report["steps_per_second"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn check_counts_what_is_there() {
+    let folder = Folder::hand_made();
+    folder.write("z.geojson", r#"{"type": "LineString", "coordinates": [[0, 0], [0, 0], [1, 0]]}"#);
+    folder.write("v.csv", "trace,x,y\n0,0,12\n0,5,12\n3,1,0\n3,5,0\n");
+    let scene = json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0]});
+    for (traces, counted) in [
+        ("", Value::Null),
+        ("--traces t.csv", json!({"traces": 4, "steps": 12, "violations": 0})),
+        ("--traces v.csv --on-violation flag", json!({"traces": 2, "steps": 2, "violations": 1})),
+    ] {
+        let found = report(&folder, &format!("check --scene s.geojson --json {traces}"));
+        assert_eq!(found, json!({"scene": scene, "traces": counted}), "{traces}");
+    }
+    let shown = folder.done("check --scene s.geojson --traces t.csv").stdout;
+    assert!(shown.contains("s.geojson: 2 walls, 4 vertices, anchor (0, 0)\n"), "{shown}");
+    assert!(shown.contains("4, 12 steps; 0 of the traces cross walls\n"), "{shown}");
+    let shown = folder.done("check --scene z.geojson --anchor 3,0").stdout;
+    assert!(shown.contains("1 walls, 2 vertices, anchor (3, 0)\n"), "{shown}");
+    assert!(shown.contains("1 walls of zero length were dropped\n") && !shown.contains("traces"), "{shown}");
+    let shown = folder.done("check").stdout;
+    assert!(shown.contains("the built-in floor plan: 467 walls") && shown.contains("4000, 2000000 steps"), "{shown}");
+}
+
+#[test]
+fn check_refuses_what_eval_refuses() {
+    let folder = Folder::hand_made();
+    folder.write("v.csv", "trace,x,y\n3,1,0\n3,5,0\n");
+    folder.refused(2, "check --scene s.geojson --traces v.csv", &["v.csv: trace 3, step 1: ", "crosses wall 0"]);
+    folder.refused(2, "check --scene s.wkb", &["s.wkb", ".geojson, .json, .map"]);
+    folder.refused(2, "check --traces t.csv", &["--traces needs --scene"]);
+    folder.refused(2, "check --scene s.geojson --anchor 3,1", &["inside wall 0"]);
+}
+
+#[test]
+fn adapters_lists_the_software_adapter() {
+    let folder = Folder::new();
+    let report = report(&folder, "adapters --json");
+    let adapters = report["adapters"].as_array().unwrap();
+    let software = adapters.iter().find(|a| a["type"] == "software").expect("a software adapter must be installed");
+    let shown = folder.done("adapters");
+    assert_eq!(shown.stderr, "");
+    let header: Vec<_> = shown.stdout.lines().next().unwrap().split_whitespace().collect();
+    assert_eq!(header, ["adapter", "type", "backend", "driver"]);
+    let [name, backend, driver] = ["name", "backend", "driver"].map(|field| software[field].as_str().unwrap());
+    assert!(!name.is_empty() && ["vulkan", "metal", "dx12"].contains(&backend) && !driver.is_empty(), "{software}");
+    let line = shown.stdout.lines().find(|l| l.starts_with(name)).unwrap();
+    assert_eq!(line[name.len()..].split_whitespace().take(2).collect::<Vec<_>>(), ["software", backend]);
+    assert!(line.ends_with(driver), "{line}");
+    let real = adapters.iter().any(|a| ["discrete", "integrated", "virtual"].contains(&a["type"].as_str().unwrap()));
+    assert_eq!(shown.stdout.contains("no real GPU"), !real, "{}", shown.stdout);
+}
+
+#[test]
+fn help_and_version_go_to_stdout() {
+    let folder = Folder::new();
+    let version = folder.done("--version");
+    assert_eq!(version.stdout, concat!("tautline ", env!("CARGO_PKG_VERSION"), "\n"));
+    for (args, parts) in [
+        ("--help", &["eval", "check", "adapters", "Exit codes: 0 done; 1 internal error; 2 bad input or usage"][..]),
+        (
+            "eval --help",
+            &["--scene", "--traces", "--out", "--events", "--engine", "reference", "--adapter", "--on-violation"],
+        ),
+        ("check --help", &["--scene", "--traces", "--anchor", "--json"]),
+        ("adapters --help", &["--json"]),
+    ] {
+        let help = folder.done(args);
+        assert_eq!(help.stderr, "", "{args}");
+        for part in parts {
+            assert!(help.stdout.contains(part), "{args}: {part:?} is missing in\n{}", help.stdout);
+        }
+    }
+}
