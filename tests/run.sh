@@ -10,11 +10,14 @@ export NODEVICE_SELECT=1
 say() { printf '\n== %s\n' "$*"; }
 
 has_driver() {
-    ls /usr/share/vulkan/icd.d/lvp_icd*.json /etc/vulkan/icd.d/lvp_icd*.json >/dev/null 2>&1 &&
-        { ldconfig -p 2>/dev/null || /sbin/ldconfig -p; } | grep -q 'libvulkan\.so\.1'
+    compgen -G '/usr/share/vulkan/icd.d/lvp_icd*.json' >/dev/null || compgen -G '/etc/vulkan/icd.d/lvp_icd*.json' >/dev/null
 }
 
-if [ "$(uname)" = Linux ] && ! has_driver; then
+has_loader() {
+    { ldconfig -p 2>/dev/null || /sbin/ldconfig -p; } | grep 'libvulkan\.so\.1' >/dev/null
+}
+
+if [ "$(uname)" = Linux ] && ! { has_driver && has_loader; }; then
     if command -v apt-get >/dev/null; then
         say "installing the software Vulkan driver (mesa-vulkan-drivers, libvulkan1)"
         root=()

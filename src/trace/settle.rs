@@ -87,9 +87,9 @@ impl<'a> Settler<'a> {
             walls.extend(self.model.index().near(low, high));
             walls.sort_unstable();
             let mut from = start;
-            for step in first..last {
-                self.step(step, from, points[step], &walls);
-                from = points[step];
+            for (step, &to) in (first..last).zip(&points[first..last]) {
+                self.step(step, from, to, &walls);
+                from = to;
             }
         }
     }

@@ -72,8 +72,7 @@ pub(super) fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&S
     }
     let pick = |cost: [u32; 2]| if cost[0] <= cost[1] { Turn::Left } else { Turn::Right };
     let mut sides: Vec<Turn> = Vec::with_capacity(slides);
-    for k in 0..slides {
-        let mut cost = costs[k];
+    for (k, mut cost) in costs.into_iter().enumerate() {
         for (c, side) in cost.iter_mut().zip(BOTH) {
             *c += match sides.last() {
                 None => enter(side),

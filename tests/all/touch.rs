@@ -23,7 +23,7 @@ fn ropes(model: &Model, points: &[P]) -> Vec<String> {
     let settled = settle(model, &trace);
     assert_eq!(settled.violation(), None);
     let by = |engine: &mut dyn Engine| {
-        let record = engine.evaluate(model, &[settled.clone()], &Job::new()).unwrap().remove(0);
+        let record = engine.evaluate(model, std::slice::from_ref(&settled), &Job::new()).unwrap().remove(0);
         let mut ropes = vec![];
         replay(model.anchor(), model.vertices(), points.len(), &record.events, |k, rope| {
             let contacts = rope.taut(points[k].into());

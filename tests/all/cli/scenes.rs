@@ -46,7 +46,7 @@ fn broken_geojson_is_placed_by_line_and_column() {
 fn faults_in_geojson_name_feature_and_position() {
     let large = ["s.geojson: feature 1, position 1: 1e200 is too large", "within 2^500"];
     refused("s.geojson", &second_feature("LineString", "[[0, 0], [1e200, 0]]"), &large);
-    let small = ["s.geojson: feature 1, position 0: 1e-200 is too small", "0 or at least 2^-480"];
+    let small = ["s.geojson: feature 1, position 0: 1e-200 is too small", "0 or at least 2^-450"];
     refused("s.geojson", &second_feature("LineString", "[[0, 1e-200], [1, 0]]"), &small);
     let open = [
         "s.geojson: feature 1, ring 0: the ring is open: it starts at [1.0, 1.0] and ends at [2.0, 2.0]",
