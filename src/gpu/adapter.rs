@@ -105,10 +105,10 @@ impl AdapterChoice {
 
     fn words(&self) -> String {
         match self {
-            AdapterChoice::Best => "was found".to_owned(),
-            AdapterChoice::Real => "that is a real GPU was found".to_owned(),
-            AdapterChoice::Software => "that is software was found".to_owned(),
-            AdapterChoice::Named(part) => format!("has {part:?} in its name"),
+            AdapterChoice::Best => "GPU adapter".to_owned(),
+            AdapterChoice::Real => "real GPU".to_owned(),
+            AdapterChoice::Software => "software adapter".to_owned(),
+            AdapterChoice::Named(part) => format!("adapter with {part:?} in its name"),
         }
     }
 }

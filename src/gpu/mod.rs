@@ -10,7 +10,7 @@ pub use pass::{GpuPass, SWEEP_WGSL};
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// No adapter fits what was asked for.
-    #[error("no GPU adapter {wanted}; this machine offers {}. {SOFTWARE_HINT}", offer(found))]
+    #[error("no {wanted} was found; this machine offers {}. {SOFTWARE_HINT}", offer(found))]
     NoAdapter {
         /// What was asked for.
         wanted: String,

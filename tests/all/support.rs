@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::Deserialize;
 use tautline::engine::{Engine, Gpu, Job};
-use tautline::gpu::{AdapterChoice, Gpu as Adapter, SOFTWARE_HINT};
+use tautline::gpu::{AdapterChoice, Gpu as Adapter};
 use tautline::rope::{TraceRecord, replay};
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
@@ -95,7 +95,7 @@ pub(crate) fn compare_with_cases(engine: impl Fn(&Model) -> Box<dyn Engine>) {
 
 /// The software adapter. A machine without one fails: the GPU engine is never left untested.
 pub(crate) fn software() -> Adapter {
-    Adapter::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}\n\n{SOFTWARE_HINT}"))
+    Adapter::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The `gpu` engine on the software adapter.
