@@ -6,7 +6,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Note, Reference};
 use tautline::example::{Walker, floor_plan, walks};
-use tautline::gpu::{AdapterChoice, Gpu as Adapter};
+use tautline::gpu::{AdapterChoice, Device};
 use tautline::scene::Model;
 use tautline::trace::{SettledTrace, Trace, settle};
 
@@ -22,24 +22,22 @@ static SETTLED: LazyLock<Vec<SettledTrace>> = LazyLock::new(|| TRACES.iter().map
 fn time(bencher: Bencher<'_, '_>, engine: &mut dyn Engine, traces: usize) {
     let batch = &SETTLED[..traces];
     let steps: usize = batch.iter().map(SettledTrace::steps).sum();
-    bencher
-        .counter(ItemsCount::new(steps))
-        .bench_local(|| engine.evaluate(&MODEL, batch, &Job::new()).expect("it runs"));
+    bencher.counter(ItemsCount::new(steps)).bench_local(|| engine.evaluate(batch, &Job::new()).expect("it runs"));
 }
 
 #[divan::bench(sample_count = 10)]
 fn reference(bencher: Bencher<'_, '_>) {
-    time(bencher, &mut Reference, 20);
+    time(bencher, &mut Reference::new(&MODEL), 20);
 }
 
 #[divan::bench(sample_count = 10)]
 fn note(bencher: Bencher<'_, '_>) {
-    time(bencher, &mut Note, 20);
+    time(bencher, &mut Note::new(&MODEL), 20);
 }
 
 #[divan::bench(sample_count = 10)]
 fn funnel(bencher: Bencher<'_, '_>) {
-    time(bencher, &mut Funnel, 200);
+    time(bencher, &mut Funnel::new(&MODEL), 200);
 }
 
 #[divan::bench(sample_count = 10)]
@@ -50,8 +48,8 @@ fn cpu(bencher: Bencher<'_, '_>) {
 /// On the best adapter that there is.
 #[divan::bench(sample_count = 10)]
 fn gpu(bencher: Bencher<'_, '_>) {
-    let adapter = Adapter::open(&AdapterChoice::Best).expect("an adapter");
-    time(bencher, &mut Gpu::new(adapter, &MODEL).expect("a pass"), 1000);
+    let device = Device::open(&AdapterChoice::Best).expect("an adapter");
+    time(bencher, &mut Gpu::new(device, &MODEL).expect("a pass"), 1000);
 }
 
 /// Checking traces against the walls and settling touches.

@@ -20,7 +20,7 @@
 //! let settled = settle(&model, &Trace { id: 0, points });
 //! assert!(settled.violation().is_none());
 //!
-//! let records = Reference.evaluate(&model, &[settled], &Job::new())?;
+//! let records = Reference::new(&model).evaluate(&[settled], &Job::new())?;
 //! assert_eq!(records[0].wraps.len(), 1);
 //! assert_eq!(records[0].wraps[0].0, [1.0, 0.0].into());
 //! # Ok::<(), Box<dyn std::error::Error>>(())

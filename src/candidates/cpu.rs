@@ -4,25 +4,28 @@ use std::convert::Infallible;
 
 use rayon::prelude::*;
 
-use super::{CandidatePass, Found, Frame, Query, ROOM};
+use super::{CandidatePass, Found, Frame, Query};
 use crate::scene::Model;
 
 /// How many vertices are tried before the hits among them are looked for: the inner loop then has no branch.
 const LANES: usize = 64;
 
 /// Runs queries on all cores, in f32.
-pub struct CpuPass {
+pub struct CpuPass<'m> {
+    model: &'m Model,
+    frame: Frame,
     /// The vertices' coordinates in the frame.
     x: Vec<f32>,
     y: Vec<f32>,
     capacity: usize,
 }
 
-impl CpuPass {
-    /// A pass over the model's vertices that takes `capacity` queries at once.
-    pub fn new(model: &Model, frame: &Frame, capacity: usize) -> Self {
+impl<'m> CpuPass<'m> {
+    /// A pass over the model's vertices that takes `capacity` queries at once, at least 1.
+    pub fn new(model: &'m Model, capacity: usize) -> Self {
+        let frame = Frame::new(model);
         let (x, y) = frame.vertices(model).into_iter().map(|p| (p.x, p.y)).unzip();
-        CpuPass { x, y, capacity }
+        CpuPass { model, frame, x, y, capacity: capacity.max(1) }
     }
 
     fn sweep(&self, query: &Query) -> Found {
@@ -53,8 +56,16 @@ fn is_inside(query: &Query, x: f32, y: f32) -> bool {
     (side(&query.right) >= 0.0) & (side(&query.left) >= 0.0) & (side(&query.far) >= 0.0)
 }
 
-impl CandidatePass for CpuPass {
+impl CandidatePass for CpuPass<'_> {
     type Error = Infallible;
+
+    fn model(&self) -> &Model {
+        self.model
+    }
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
 
     fn capacity(&self) -> usize {
         self.capacity
@@ -66,5 +77,3 @@ impl CandidatePass for CpuPass {
         Ok(())
     }
 }
-
-const _: () = assert!(ROOM == 15, "the shader has room for 15");

@@ -16,8 +16,7 @@ pub struct Frame {
 impl Frame {
     /// The frame of all vertices and the anchor.
     pub fn new(model: &Model) -> Self {
-        let anchor = model.anchor();
-        let (low, high) = (model.vertices().iter()).fold((anchor, anchor), |(l, h), &p| (l.min(p), h.max(p)));
+        let (low, high) = model.bounds();
         // Halved first: the sum and the difference of the largest coordinates stay finite.
         let centre = low / 2.0 + high / 2.0;
         let half = (high - centre).abs().max((low - centre).abs()).max_element();

@@ -9,6 +9,8 @@ mod query;
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::scene::Model;
+
 pub use cpu::CpuPass;
 pub use frame::Frame;
 pub use query::{Query, Swept, swept};
@@ -39,6 +41,12 @@ impl Found {
 pub trait CandidatePass {
     /// What can go wrong.
     type Error;
+
+    /// The model whose vertices it tries.
+    fn model(&self) -> &Model;
+
+    /// The frame in which its queries are.
+    fn frame(&self) -> &Frame;
 
     /// How many queries one run can take.
     fn capacity(&self) -> usize;

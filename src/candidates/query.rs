@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::Frame;
 
-/// By how much a swept triangle is grown, in the frame's unit: 2^-20, about 9.5e-7.
+/// By how much a swept triangle is grown, in the frame's unit: 2^-19, about 1.9e-6.
 ///
 /// A vertex inside the exact triangle passes the f32 test dot(normal, p) + offset >= 0 because all errors together stay
 /// below the margin. With |p.x|, |p.y| <= 1 and a unit normal, in the frame's unit:
@@ -15,13 +15,17 @@ use super::Frame;
 /// | p rounded to f32 | sqrt(2) 2^-25 |
 /// | the normal rounded to f32 | 2 x 2^-25 |
 /// | the offset, at most 2 in magnitude, rounded to f32 | 2^-24 |
-/// | two products of at most 1, each rounded or not (fused) | 2 x 2^-25 |
-/// | two sums of at most 3.5 in magnitude, in any order | 2 x 2^-23 |
-/// | products and sums flushed to zero | 3 x 2^-126 |
-/// | the pivot, the directions and the normal computed in f64 | below 2^-45 |
+/// | two products of at most 1, each to one of the two nearest f32 (WGSL names no rounding mode) or fused | 2 x 2^-24 |
+/// | two sums of at most 3.5 in magnitude, likewise, in any order | 2 x 2^-22 |
+/// | products and sums flushed to zero | 5 x 2^-126 |
+/// | the pivot, the directions and the normals computed in f64, for ways of up to 2^20 | below 2^-30 |
 ///
-/// which is 4.4e-7 in all. Fusing and reassociating change which sums round, not how many.
-const MARGIN: f64 = 1.0 / (1 << 20) as f64;
+/// which is 7.6e-7 in all. Fusing and reassociating change which sums round, not how many.
+const MARGIN: f64 = 1.0 / (1 << 19) as f64;
+
+/// The longest way from the pivot, in the frame's unit, for which a single leg gets a triangle: 2^20. The far side's
+/// offset, and even the way in which the triangle turns, are rounded in proportion to the ways.
+const LONGEST: f64 = (1 << 20) as f64;
 
 /// The largest offset: beyond it a half-plane holds every vertex (|dot(normal, p)| <= sqrt(2)), or none.
 const FAR: f64 = 2.0;
@@ -51,7 +55,8 @@ pub struct Swept {
 /// The triangle with its apex at `pivot` that covers as many as possible of the legs between neighbours in `points`.
 ///
 /// `points` are at least two; their first is where the free end stands. A window of several legs ends before the
-/// directions from the pivot spread to a right angle; a single leg may spread to anything below a half turn.
+/// directions from the pivot spread to a right angle; a single leg may spread to anything below a half turn. A single leg
+/// that spreads and starts or ends absurdly far away is covered by the whole plane.
 /// O(legs covered).
 ///
 /// Convexity makes a window outlive its events: after a wrap the pivot lies inside the triangle, so everything that the
@@ -122,6 +127,10 @@ impl Cone {
 
 /// The triangle of `origin` and the points at `a` and `b` from it, whose directions are a right angle or more apart.
 fn triangle(origin: DVec2, a: DVec2, b: DVec2) -> Query {
+    if a.abs().max(b.abs()).max_element() > LONGEST {
+        let everywhere = [0.0, 0.0, 1.0, 0.0];
+        return Query { right: everywhere, left: everywhere, far: everywhere };
+    }
     let (ta, tb) = (tamed(a), tamed(b));
     let ((right, left), (r, l)) = if ta.perp_dot(tb) >= 0.0 { ((ta, tb), (a, b)) } else { ((tb, ta), (b, a)) };
     let far = unit(tamed(l - r)).perp();

@@ -1,6 +1,7 @@
 //! `tautline check`.
 
 use serde_json::json;
+use tautline::trace::{Violation, ViolationKind};
 
 use super::failure::Failure;
 use super::input::{OnViolation, SceneArgs, settle_all};
@@ -28,7 +29,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     let anchor = model.anchor();
     let counts = settled.map(|settled| {
-        let violations = settled.iter().filter(|t| t.violation().is_some()).count();
+        let violations: Vec<Violation> = settled.iter().filter_map(|t| t.violation().copied()).collect();
         (settled.len(), settled.iter().map(|t| t.steps() as u64).sum::<u64>(), violations)
     });
     if args.json {
@@ -38,6 +39,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
                 "dropped": scene.dropped(), "anchor": [anchor.x, anchor.y],
             },
             "traces": counts.map(|(traces, steps, violations)| {
+                let violations: Vec<_> = violations.iter().map(violation).collect();
                 json!({"traces": traces, "steps": steps, "violations": violations})
             }),
         }));
@@ -54,7 +56,19 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         text += &format!("        {} walls of zero length were dropped\n", scene.dropped());
     }
     if let Some((traces, steps, violations)) = counts {
-        text += &format!("traces  {traces}, {steps} steps; {violations} of the traces cross walls\n");
+        text += &format!("traces  {traces}, {steps} steps; {} of the traces cross walls\n", violations.len());
     }
     print(&text)
+}
+
+fn violation(v: &Violation) -> serde_json::Value {
+    let kind = match v.kind {
+        ViolationKind::Crosses => "crosses",
+        ViolationKind::EndsInside => "ends inside",
+        ViolationKind::SlipsThrough => "slips through",
+    };
+    json!({
+        "trace": v.trace, "step": v.step, "kind": kind, "wall": v.wall, "ends": v.ends.map(|p| p.to_array()),
+        "from": v.from.to_array(), "to": v.to.to_array(),
+    })
 }

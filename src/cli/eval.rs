@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::anyhow;
-use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Note, Reference};
-use tautline::gpu::{AdapterChoice, Gpu as Adapter, GpuError};
+use tautline::engine::Job;
 use tautline::output::{EventWriter, ResultWriter, WholeFile, check_output};
 use tautline::rope::TraceRecord;
 use tautline::scene::Model;
 
+use super::engine::EngineArgs;
 use super::failure::Failure;
 use super::input::{OnViolation, SceneArgs, settle_all};
 use super::interrupt::{self, Writing};
@@ -27,37 +27,14 @@ pub(crate) struct Args {
     /// Where to write every wrap and unwrap: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
-    /// What computes the ropes
-    #[arg(long, value_enum, default_value = "auto")]
-    engine: EngineName,
-    /// Which GPU: part of its name, or `software`; implies `--engine gpu`
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
+    #[command(flatten)]
+    engine: EngineArgs,
     /// What to do with a trace that crosses a wall
     #[arg(long, value_enum, default_value = "error")]
     on_violation: OnViolation,
-    /// The most steps that one query covers; no result depends on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    window: Option<u32>,
     /// Print the summary as one JSON document
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum EngineName {
-    /// `gpu` on a real GPU, else `cpu`
-    Auto,
-    /// A compute shader finds candidates for many traces at once, the CPU decides exactly
-    Gpu,
-    /// The same on threads
-    Cpu,
-    /// One trace and one step after the other, every vertex tried: the arbiter
-    Reference,
-    /// Another method: triangulation, crossing word, funnel
-    Funnel,
-    /// The seed note's listing 1, as written: wrong on purpose, for comparison
-    Note,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -74,13 +51,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let traces = args.input.read_traces(&model)?;
     let settled = settle_all(&args.input, &model, traces, args.on_violation)?;
-    let (mut engine, on) = engine(args, &model)?;
+    let (mut engine, on) = args.engine.open(&model)?;
     let prepared = start.elapsed();
 
     let job = Job::new();
     let steps = settled.iter().map(|t| t.steps() as u64).sum();
     let start = Instant::now();
-    let records = with_progress(&job, steps, || engine.evaluate(&model, &settled, &job))?;
+    let records = with_progress(&job, steps, || engine.evaluate(&settled, &job))?;
     let evaluated = start.elapsed();
     drop(settled);
     write(args, &model, &records)?;
@@ -114,46 +91,6 @@ fn place(path: &Path) -> PathBuf {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
         path.file_name().map_or(folder.clone(), |name| folder.join(name))
-    })
-}
-
-/// The engine asked for, and in words what it runs on; says on stderr what was chosen where there was a choice.
-fn engine(args: &Args, model: &Model) -> Result<(Box<dyn Engine>, String), Failure> {
-    let choice = match args.adapter.as_deref() {
-        None => AdapterChoice::Best,
-        Some("software") => AdapterChoice::Software,
-        Some(name) => AdapterChoice::Named(name.to_owned()),
-    };
-    let name = match (args.engine, &args.adapter) {
-        (EngineName::Auto, Some(_)) => EngineName::Gpu,
-        (EngineName::Gpu | EngineName::Auto, _) | (_, None) => args.engine,
-        (_, Some(_)) => return Err(Failure::input(anyhow!("--adapter goes with --engine gpu or auto"))),
-    };
-    let window = args.window.map_or(tautline::engine::WINDOW, |w| w as usize);
-    let cpu = || -> (Box<dyn Engine>, String) {
-        (Box::new(Cpu::new(model).window(window)), format!("{} threads", rayon::current_num_threads()))
-    };
-    let gpu = |adapter| -> Result<(Box<dyn Engine>, String), Failure> {
-        let engine = Gpu::new(adapter, model)?.window(window);
-        let on = engine.adapter().to_string();
-        eprintln!("engine: gpu on {on}");
-        Ok((Box::new(engine), on))
-    };
-    let one_thread = "one thread".to_owned();
-    Ok(match name {
-        EngineName::Gpu => gpu(Adapter::open(&choice)?)?,
-        EngineName::Auto => match Adapter::open(&AdapterChoice::Real) {
-            Ok(adapter) => gpu(adapter)?,
-            Err(GpuError::NoAdapter { .. }) => {
-                eprintln!("engine: cpu, since there is no real GPU here (`tautline adapters` lists what there is)");
-                cpu()
-            }
-            Err(other) => return Err(other.into()),
-        },
-        EngineName::Cpu => cpu(),
-        EngineName::Reference => (Box::new(Reference), one_thread),
-        EngineName::Funnel => (Box::new(Funnel), one_thread),
-        EngineName::Note => (Box::new(Note), one_thread),
     })
 }
 

@@ -80,7 +80,7 @@ fn is_geojson(path: &Path) -> bool {
 /// What to do with a trace that breaks the small update condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum OnViolation {
-    /// Stop and name the first
+    /// Stop, and name the first
     Error,
     /// Mark such traces in the results and go on
     Flag,
@@ -98,14 +98,19 @@ pub(crate) fn settle_all(
     let violations: Vec<_> = settled.iter().filter_map(|t| t.violation()).collect();
     match (violations.first(), rule) {
         (Some(first), OnViolation::Error) => {
-            let hint = "; --on-violation flag marks such traces and goes on";
-            Err(Failure::input(anyhow!("{file}{first}{hint}")))
+            let more = match violations.len() - 1 {
+                0 => String::new(),
+                more => format!(" ({more} more traces cross walls)"),
+            };
+            let hint = "--on-violation flag marks such traces and goes on";
+            Err(Failure::input(anyhow!("{file}{first}; {hint}{more}")))
         }
         (Some(_), OnViolation::Flag) => {
             const SHOWN: usize = 5;
             violations.iter().take(SHOWN).for_each(|v| eprintln!("warning: {file}{v}"));
             if violations.len() > SHOWN {
-                eprintln!("warning: and {} more traces that cross walls", violations.len() - SHOWN);
+                let more = violations.len() - SHOWN;
+                eprintln!("warning: and {more} more traces that cross walls; `tautline check --json` lists them all");
             }
             Ok(settled)
         }

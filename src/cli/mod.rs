@@ -2,6 +2,7 @@
 
 mod adapters;
 mod check;
+mod engine;
 pub(crate) mod environment;
 mod eval;
 mod failure;

@@ -20,7 +20,7 @@ pub(crate) fn with_progress<T>(job: &Job, steps: u64, work: impl FnOnce() -> T) 
             let style = "{wide_bar} {human_pos}/{human_len} steps, {per_sec}, {eta} left";
             bar.set_style(ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()));
             while waiting.recv_timeout(Duration::from_millis(100)) == Err(RecvTimeoutError::Timeout) {
-                bar.set_position(job.steps().min(steps));
+                bar.set_position(job.steps());
             }
             bar.finish_and_clear();
         });

@@ -11,6 +11,7 @@ pub(crate) struct Summary {
     scene: String,
     walls: usize,
     vertices: usize,
+    dropped: usize,
     anchor: [f64; 2],
     on: String,
     engine: &'static str,
@@ -96,6 +97,7 @@ impl Summary {
             scene: scene.to_owned(),
             walls: model.scene().walls().len(),
             vertices: model.vertices().len(),
+            dropped: model.scene().dropped(),
             anchor: model.anchor().to_array(),
             on,
             engine,
@@ -158,7 +160,7 @@ impl Summary {
 
     pub(crate) fn json(&self) -> Value {
         json!({
-            "scene": {"name": self.scene, "walls": self.walls, "vertices": self.vertices, "anchor": self.anchor},
+            "scene": {"name": self.scene, "walls": self.walls, "vertices": self.vertices, "dropped": self.dropped, "anchor": self.anchor},
             "engine": self.engine, "on": self.on, "version": env!("CARGO_PKG_VERSION"),
             "traces": self.traces, "steps": self.steps, "violations": self.violations,
             "wraps": self.wraps, "unwraps": self.unwraps,

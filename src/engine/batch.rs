@@ -16,9 +16,7 @@ const FIRST_WINDOW: usize = 8;
 /// Evaluates `traces` in rounds of `pass`, with windows of at most `window` legs.
 pub(super) fn evaluate<P>(
     pass: &mut P,
-    frame: &Frame,
     window: usize,
-    model: &Model,
     traces: &[SettledTrace],
     job: &Job,
 ) -> Result<Vec<TraceRecord>, EngineError>
@@ -28,7 +26,8 @@ where
 {
     let mut records: Vec<Option<TraceRecord>> = traces.iter().map(|_| None).collect();
     let mut waiting = traces.iter().enumerate();
-    let mut slots: Vec<Slot<'_>> = waiting.by_ref().take(pass.capacity()).map(|t| Slot::new(model, t)).collect();
+    let capacity = pass.capacity();
+    let mut slots: Vec<Slot<'_>> = waiting.by_ref().take(capacity).map(|t| Slot::new(pass.model(), t)).collect();
     let mut queries = vec![Query::default(); slots.len()];
     let mut found = vec![Found::default(); slots.len()];
     loop {
@@ -38,7 +37,7 @@ where
             while let Some(record) = slots[i].finished() {
                 records[slots[i].number] = Some(record);
                 match waiting.next() {
-                    Some(next) => slots[i].take(model, next),
+                    Some(next) => slots[i].take(pass.model(), next),
                     None => {
                         slots.swap_remove(i);
                         break;
@@ -50,9 +49,11 @@ where
             break;
         }
         let (queries, found) = (&mut queries[..slots.len()], &mut found[..slots.len()]);
-        let ask = |(slot, query): (&mut Slot<'_>, &mut Query)| *query = slot.ask(frame, window);
+        let frame = *pass.frame();
+        let ask = |(slot, query): (&mut Slot<'_>, &mut Query)| *query = slot.ask(&frame, window);
         slots.par_iter_mut().zip(queries.par_iter_mut()).with_min_len(64).for_each(ask);
         pass.run(queries, found)?;
+        let model = pass.model();
         let advance = |(slot, found): (&mut Slot<'_>, &Found)| slot.advance(model, found);
         job.count(slots.par_iter_mut().zip(found.par_iter()).with_min_len(64).map(advance).sum());
     }
@@ -100,7 +101,7 @@ impl<'a> Slot<'a> {
         swept.query
     }
 
-    /// Goes on exactly as far as the candidates suffice, and returns by how many legs.
+    /// Goes on exactly as far as the candidates suffice, and returns by how many steps of the trace.
     fn advance(&mut self, model: &Model, found: &Found) -> usize {
         let start = self.walk.at;
         match found.candidates() {
@@ -115,7 +116,7 @@ impl<'a> Slot<'a> {
             // Too many for one leg.
             None => self.try_all(model),
         }
-        self.walk.at - start
+        self.trace.step(self.walk.at) - self.trace.step(start)
     }
 
     /// Plays the window's legs with all vertices, as the reference does.

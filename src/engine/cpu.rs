@@ -1,7 +1,7 @@
 //! The batch pipeline for machines without a GPU: the candidate pass on threads.
 
 use super::{Engine, EngineError, Job, WINDOW, batch};
-use crate::candidates::{CpuPass, Frame};
+use crate::candidates::CpuPass;
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
@@ -10,22 +10,20 @@ use crate::trace::SettledTrace;
 const SLOTS: usize = 4096;
 
 /// Evaluates traces on all cores, for one model.
-pub struct Cpu {
-    pass: CpuPass,
-    frame: Frame,
+pub struct Cpu<'m> {
+    pass: CpuPass<'m>,
     window: usize,
 }
 
-impl Cpu {
+impl<'m> Cpu<'m> {
     /// An engine for `model`.
-    pub fn new(model: &Model) -> Self {
+    pub fn new(model: &'m Model) -> Self {
         Self::with_slots(model, SLOTS)
     }
 
     /// An engine that evaluates at most `slots` traces at a time, at least 1.
-    pub fn with_slots(model: &Model, slots: usize) -> Self {
-        let frame = Frame::new(model);
-        Cpu { pass: CpuPass::new(model, &frame, slots.max(1)), frame, window: WINDOW }
+    pub fn with_slots(model: &'m Model, slots: usize) -> Self {
+        Cpu { pass: CpuPass::new(model, slots), window: WINDOW }
     }
 
     /// The same engine with windows of at most `legs` legs, at least 1.
@@ -36,12 +34,12 @@ impl Cpu {
     }
 }
 
-impl Engine for Cpu {
+impl Engine for Cpu<'_> {
     fn name(&self) -> &'static str {
         "cpu"
     }
 
-    fn evaluate(&mut self, model: &Model, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        batch::evaluate(&mut self.pass, &self.frame, self.window, model, traces, job)
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        batch::evaluate(&mut self.pass, self.window, traces, job)
     }
 }

@@ -1,8 +1,7 @@
 //! The engine of the product: the candidate pass in a compute shader, pushes and pops on the CPU.
 
 use super::{Engine, EngineError, Job, WINDOW, batch};
-use crate::candidates::Frame;
-use crate::gpu::{AdapterSummary, Gpu as Adapter, GpuError, GpuPass};
+use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
@@ -12,26 +11,24 @@ use crate::trace::SettledTrace;
 const SLOTS: usize = 8192;
 
 /// Evaluates traces on a GPU, for one model.
-pub struct Gpu {
-    pass: GpuPass,
-    frame: Frame,
+pub struct Gpu<'m> {
+    pass: GpuPass<'m>,
     window: usize,
 }
 
-impl Gpu {
+impl<'m> Gpu<'m> {
     /// An engine for `model` on an opened adapter.
     ///
     /// # Errors
     ///
     /// What the device complains of.
-    pub fn new(adapter: Adapter, model: &Model) -> Result<Self, GpuError> {
-        let frame = Frame::new(model);
-        Ok(Gpu { pass: GpuPass::new(adapter, model, &frame, SLOTS)?, frame, window: WINDOW })
+    pub fn new(device: Device, model: &'m Model) -> Result<Self, GpuError> {
+        Ok(Self::with_pass(GpuPass::new(device, model, SLOTS)?))
     }
 
-    /// An engine on a pass of one's own making, for the same model: with another number of slots, say.
-    pub fn with_pass(pass: GpuPass, frame: Frame) -> Self {
-        Gpu { pass, frame, window: WINDOW }
+    /// An engine on a pass of one's own making, with another number of slots, say.
+    pub fn with_pass(pass: GpuPass<'m>) -> Self {
+        Gpu { pass, window: WINDOW }
     }
 
     /// The same engine with windows of at most `legs` legs, at least 1.
@@ -43,16 +40,16 @@ impl Gpu {
 
     /// The adapter on which it runs.
     pub fn adapter(&self) -> &AdapterSummary {
-        self.pass.gpu().summary()
+        self.pass.device().summary()
     }
 }
 
-impl Engine for Gpu {
+impl Engine for Gpu<'_> {
     fn name(&self) -> &'static str {
         "gpu"
     }
 
-    fn evaluate(&mut self, model: &Model, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        batch::evaluate(&mut self.pass, &self.frame, self.window, model, traces, job)
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        batch::evaluate(&mut self.pass, self.window, traces, job)
     }
 }

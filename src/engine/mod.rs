@@ -14,7 +14,6 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::gpu::GpuError;
 use crate::rope::TraceRecord;
-use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 pub use cpu::Cpu;
@@ -27,19 +26,19 @@ pub use reference::Reference;
 /// longer windows gain little.
 pub const WINDOW: usize = 256;
 
-/// Turns a batch of independent traces into records.
+/// Turns batches of independent traces into records, for the model that the engine was made for.
 pub trait Engine {
     /// The engine's name, as the command line knows it.
     fn name(&self) -> &'static str;
 
-    /// Evaluates all `traces` against `model` and returns their records in the same order.
+    /// Evaluates all `traces`, settled against the engine's model, and returns their records in the same order.
     ///
     /// Counts finished steps in `job` as it goes, and ends early when the job is stopped.
     ///
     /// # Errors
     ///
     /// [`EngineError::Stopped`] when the job was stopped, and whatever can go wrong with the engine's device.
-    fn evaluate(&mut self, model: &Model, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError>;
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError>;
 }
 
 /// Why an engine gave no result.
@@ -80,7 +79,7 @@ impl Job {
         Job { steps: AtomicU64::new(0), stop: AtomicBool::new(false) }
     }
 
-    /// How many trace-steps are done.
+    /// How many steps of traces are done.
     pub fn steps(&self) -> u64 {
         self.steps.load(Ordering::Relaxed)
     }

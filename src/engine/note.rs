@@ -15,18 +15,28 @@ use crate::trace::SettledTrace;
 const INF: f64 = 1e9;
 
 /// Listing 1 of the note. O(obstacle points) a step, on one thread.
-#[derive(Debug, Default, Clone, Copy)]
-pub struct Note;
+#[derive(Clone, Copy)]
+pub struct Note<'m> {
+    model: &'m Model,
+}
+
+impl<'m> Note<'m> {
+    /// An engine for `model`.
+    pub fn new(model: &'m Model) -> Self {
+        Note { model }
+    }
+}
 
 /// A ray as the listing has it: a segment to a far point.
 type Ray = (DVec2, DVec2);
 
-impl Engine for Note {
+impl Engine for Note<'_> {
     fn name(&self) -> &'static str {
         "note"
     }
 
-    fn evaluate(&mut self, model: &Model, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        let model = self.model;
         // The flattened list of the obstacle segments' ends: a shared end stands in it once a segment.
         let obstacle_points: Vec<(u32, DVec2)> =
             model.scene().walls().iter().flatten().map(|&v| (v, model.vertices()[v as usize])).collect();
@@ -39,8 +49,9 @@ impl Engine for Note {
                 job.go_on()?;
                 let (a0, a) = (trace.points()[walk.at], trace.points()[walk.at + 1]);
                 step(&mut walk, trace, model.anchor(), &obstacle_points, &mut unwrapping_ray, a0, a);
+                let before = trace.step(walk.at);
                 walk.arrive(trace);
-                job.count(1);
+                job.count(trace.step(walk.at) - before);
             }
             records.push(walk.record(trace));
         }

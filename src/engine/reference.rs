@@ -7,15 +7,25 @@ use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 /// The engine that all others are checked against. O(vertices) for each step and each event, on one thread.
-#[derive(Debug, Default, Clone, Copy)]
-pub struct Reference;
+#[derive(Clone, Copy)]
+pub struct Reference<'m> {
+    model: &'m Model,
+}
 
-impl Engine for Reference {
+impl<'m> Reference<'m> {
+    /// An engine for `model`.
+    pub fn new(model: &'m Model) -> Self {
+        Reference { model }
+    }
+}
+
+impl Engine for Reference<'_> {
     fn name(&self) -> &'static str {
         "reference"
     }
 
-    fn evaluate(&mut self, model: &Model, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        let model = self.model;
         let all = 0..model.vertices().len() as u32;
         let mut walk = Walk::new();
         let mut records = Vec::with_capacity(traces.len());
@@ -23,9 +33,9 @@ impl Engine for Reference {
             walk.start(model, trace);
             while !walk.is_done(trace) {
                 job.go_on()?;
-                if walk.next(model, trace, all.clone()).is_none() {
-                    job.count(1);
-                }
+                let before = trace.step(walk.at);
+                walk.next(model, trace, all.clone());
+                job.count(trace.step(walk.at) - before);
             }
             records.push(walk.record(trace));
         }

@@ -16,8 +16,8 @@ pub(super) struct Walk {
     max_length: f64,
     max_depth: u32,
     events: Vec<Event>,
-    /// The most events that the current leg can still have.
-    leg_room: usize,
+    /// The wraps that the current leg can still have, and one more.
+    wraps_left: usize,
 }
 
 impl Walk {
@@ -29,7 +29,7 @@ impl Walk {
             max_length: 0.0,
             max_depth: 0,
             events: Vec::new(),
-            leg_room: 0,
+            wraps_left: 0,
         }
     }
 
@@ -41,7 +41,7 @@ impl Walk {
         self.max_length = 0.0;
         self.max_depth = 0;
         self.events.clear();
-        self.leg_room = model.vertices().len() + 1;
+        self.wraps_left = model.vertices().len() + 1;
         self.look(trace);
     }
 
@@ -60,23 +60,23 @@ impl Walk {
         candidates: impl IntoIterator<Item = u32>,
     ) -> Option<EventKind> {
         let leg = Leg { a0: trace.point(self.at), a1: trace.point(self.at + 1) };
-        let event = match self.leg_room {
-            // Within a leg the rope unwraps, then wraps, each contact and each vertex once. Only where a trace goes
-            // through walls can a rope turn more than half way round a wall's end, and then the update may find no end.
+        let event = match self.wraps_left {
+            // A leg wraps no vertex twice. Only where a trace goes through walls can a rope turn more than half way round
+            // a wall's end, and then the update may find no end.
             0 => {
-                assert!(trace.violation().is_some(), "a leg that keeps to the rules meets no vertex twice");
+                assert!(trace.violation().is_some(), "a leg that keeps to the rules wraps no vertex twice");
                 None
             }
             _ => self.sweep.next(&mut self.rope, &leg, model.vertices(), candidates),
         };
         match event {
             Some((kind, vertex, side)) => {
-                self.leg_room -= 1;
+                self.wraps_left -= usize::from(kind == EventKind::Wrap);
                 self.note(trace, kind, vertex, side);
                 Some(kind)
             }
             None => {
-                self.leg_room = model.vertices().len() + self.rope.contacts().len() + 1;
+                self.wraps_left = model.vertices().len() + 1;
                 self.arrive(trace);
                 None
             }

@@ -28,8 +28,7 @@ pub struct Walker {
 ///
 /// A walker that finds no way on stays where it is for that step.
 pub fn walks(model: &Model, walker: Walker, count: u64) -> Vec<Trace> {
-    let vertices = model.vertices().iter();
-    let bounds = vertices.fold((model.anchor(), model.anchor()), |(l, h), &p| (l.min(p), h.max(p)));
+    let bounds = model.bounds();
     (0..count).into_par_iter().map(|id| walk(model, bounds, walker, id)).collect()
 }
 

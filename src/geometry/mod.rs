@@ -5,5 +5,5 @@ mod predicates;
 mod trace_point;
 
 pub use limits::{COORDINATE_MAX, COORDINATE_MIN, CoordinateFault, check_point};
-pub use predicates::{between, forwards, left, orient};
+pub use predicates::{between, forwards, opposite, orient, same_side};
 pub use trace_point::{Hair, TracePoint, Turn, left_of, orient_step};

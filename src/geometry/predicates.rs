@@ -22,10 +22,18 @@ pub fn orient(p: DVec2, q: DVec2, r: DVec2) -> f64 {
     robust::orient2d(coord(p), coord(q), coord(r))
 }
 
-/// Whether `r` lies left of `p -> q`, where on the line counts as left, once and for all.
+/// Whether two areas have the same sign, neither being zero: the points lie strictly on the same side.
+///
+/// Not their product's sign: tiny areas have a product of zero.
 #[inline]
-pub fn left(p: DVec2, q: DVec2, r: DVec2) -> bool {
-    orient(p, q, r) >= 0.0
+pub fn same_side(a: f64, b: f64) -> bool {
+    (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
+}
+
+/// Whether two areas have opposite signs, neither being zero: the points lie strictly on different sides.
+#[inline]
+pub fn opposite(a: f64, b: f64) -> bool {
+    same_side(a, -b)
 }
 
 /// For three points on one line: whether the way `o -> p -> q` goes on forwards, with `q` strictly beyond `p`.
@@ -58,8 +66,8 @@ mod tests {
     }
 
     #[test]
-    fn left_takes_the_line_in() {
-        assert!(left(DVec2::ZERO, DVec2::X, DVec2::X * 7.0));
-        assert!(!left(DVec2::ZERO, DVec2::X, DVec2::new(0.5, -1e-300)));
+    fn sides_of_tiny_areas() {
+        assert!(same_side(1e-200, 1e-200) && !same_side(1e-200, -1e-200) && !same_side(0.0, 1.0));
+        assert!(opposite(-1e-200, 1e-200) && !opposite(0.0, -1.0) && !opposite(-1.0, -2.0));
     }
 }

@@ -131,23 +131,29 @@ pub fn adapters() -> Vec<AdapterSummary> {
     enumerate().into_iter().map(|(summary, _)| summary).collect()
 }
 
-/// An opened adapter. Clones share the device.
+struct Complaint {
+    words: String,
+    /// Whether the device is gone for good.
+    lost: bool,
+}
+
+/// An opened adapter. Clones share it.
 #[derive(Clone)]
-pub struct Gpu {
+pub struct Device {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     summary: AdapterSummary,
-    /// The first thing that the device or its driver complained of.
-    complaint: Arc<Mutex<Option<String>>>,
+    /// The first thing that the device or its driver complained of since it was last asked.
+    complaint: Arc<Mutex<Option<Complaint>>>,
 }
 
-impl Gpu {
+impl Device {
     /// Opens the first adapter that fits `choice`.
     ///
     /// # Errors
     ///
     /// [`GpuError::NoAdapter`] with a list of what there is, or the reason why the adapter cannot be used.
-    pub fn open(choice: &AdapterChoice) -> Result<Gpu, GpuError> {
+    pub fn open(choice: &AdapterChoice) -> Result<Device, GpuError> {
         let all = enumerate();
         let Some((summary, adapter)) = all.iter().find(|(summary, _)| choice.fits(summary)) else {
             let found = all.into_iter().map(|(summary, _)| summary).collect();
@@ -163,14 +169,14 @@ impl Gpu {
             pollster::block_on(adapter.request_device(&request)).map_err(|cause| unfit(cause.to_string()))?;
         let complaint = Arc::new(Mutex::new(None));
         let heard = Arc::clone(&complaint);
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| hear(&heard, error.to_string())));
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| hear(&heard, error.to_string(), false)));
         let heard = Arc::clone(&complaint);
         device.set_device_lost_callback(move |reason, message| {
             if reason != wgpu::DeviceLostReason::Destroyed {
-                hear(&heard, format!("the device was lost: {message}"));
+                hear(&heard, format!("the device was lost: {message}"), true);
             }
         });
-        Ok(Gpu { device, queue, summary: summary.clone(), complaint })
+        Ok(Device { device, queue, summary: summary.clone(), complaint })
     }
 
     /// The adapter in words.
@@ -178,13 +184,18 @@ impl Gpu {
         &self.summary
     }
 
-    /// An error if the device has complained since it was opened.
+    /// An error if the device has complained since it was last asked, or is lost.
     pub(super) fn check(&self) -> Result<(), GpuError> {
-        match self.complaint.lock().map(|c| c.clone()) {
-            Ok(None) => Ok(()),
-            Ok(Some(why)) => Err(self.failed(why)),
-            Err(_) => Err(self.failed("its error handler broke")),
+        let Ok(mut complaint) = self.complaint.lock() else { return Err(self.failed("its error handler broke")) };
+        match &*complaint {
+            None => Ok(()),
+            Some(Complaint { words, lost: true }) => Err(self.failed(words)),
+            Some(_) => Err(self.failed(complaint.take().map_or(String::new(), |c| c.words))),
         }
+    }
+
+    pub(super) fn unfit(&self, why: String) -> GpuError {
+        GpuError::Unfit { adapter: self.summary.name.clone(), why }
     }
 
     pub(super) fn failed(&self, why: impl ToString) -> GpuError {
@@ -192,8 +203,10 @@ impl Gpu {
     }
 }
 
-fn hear(complaint: &Mutex<Option<String>>, words: String) {
-    if let Ok(mut complaint) = complaint.lock() {
-        complaint.get_or_insert(words);
+fn hear(complaint: &Mutex<Option<Complaint>>, words: String, lost: bool) {
+    if let Ok(mut complaint) = complaint.lock()
+        && complaint.as_ref().is_none_or(|c| lost && !c.lost)
+    {
+        *complaint = Some(Complaint { words, lost });
     }
 }

@@ -3,7 +3,7 @@
 mod adapter;
 mod pass;
 
-pub use adapter::{AdapterChoice, AdapterKind, AdapterSummary, Gpu, SOFTWARE_HINT, adapters};
+pub use adapter::{AdapterChoice, AdapterKind, AdapterSummary, Device, SOFTWARE_HINT, adapters};
 pub use pass::{GpuPass, SWEEP_WGSL};
 
 /// What can go wrong with a GPU.

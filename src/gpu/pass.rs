@@ -6,7 +6,7 @@ use std::time::Duration;
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BufferUsages, PollType};
 
-use super::{Gpu, GpuError};
+use super::{Device, GpuError};
 use crate::candidates::{CandidatePass, Found, Frame, Query};
 use crate::scene::Model;
 
@@ -21,8 +21,11 @@ const CHUNK_VERTICES: usize = (CHUNK_BYTES as usize - size_of::<ChunkHeader>()) 
 /// The workgroup's size in the shader.
 const WORKGROUP: u32 = 64;
 
-/// How long a round may take before the device is given up. A round of the largest size over a million vertices takes
-/// seconds on the slowest adapter known.
+/// How many tests a round has at most, if that leaves work for one workgroup: 2^32, some seconds on the slowest adapter
+/// known (0.7e9 tests a second), well within the patience of drivers that watch for hanging kernels on real GPUs.
+const TESTS_A_ROUND: usize = 1 << 32;
+
+/// How long a round may take before the device is given up.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The start of the shader's `Chunk`.
@@ -43,8 +46,10 @@ struct Round {
 }
 
 /// Runs queries on a GPU. All buffers are made once.
-pub struct GpuPass {
-    gpu: Gpu,
+pub struct GpuPass<'m> {
+    model: &'m Model,
+    frame: Frame,
+    device: Device,
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
     round: wgpu::Buffer,
@@ -55,14 +60,15 @@ pub struct GpuPass {
     capacity: usize,
 }
 
-impl GpuPass {
-    /// A pass over the model's vertices that takes `capacity` queries at once.
+impl<'m> GpuPass<'m> {
+    /// A pass over the model's vertices that takes `capacity` queries at once, or fewer where the device's limits or the
+    /// number of vertices ask for it.
     ///
     /// # Errors
     ///
     /// What the device complains of, be it the shader or the memory.
-    pub fn new(gpu: Gpu, model: &Model, frame: &Frame, capacity: usize) -> Result<Self, GpuError> {
-        Self::with_shader(gpu, model, frame, capacity, SWEEP_WGSL)
+    pub fn new(device: Device, model: &'m Model, capacity: usize) -> Result<Self, GpuError> {
+        Self::with_shader(device, model, capacity, SWEEP_WGSL)
     }
 
     /// The same with another shader in the place of `sweep.wgsl`: what tests use to see that they can fail.
@@ -70,13 +76,20 @@ impl GpuPass {
     /// # Errors
     ///
     /// As [`new`](Self::new).
-    pub fn with_shader(gpu: Gpu, model: &Model, frame: &Frame, capacity: usize, wgsl: &str) -> Result<Self, GpuError> {
-        let device = &gpu.device;
+    pub fn with_shader(opened: Device, model: &'m Model, capacity: usize, wgsl: &str) -> Result<Self, GpuError> {
+        let frame = Frame::new(model);
+        let device = &opened.device;
         let limits = device.limits();
-        // What one storage binding and one dispatch can take bounds the round.
+        let chunks = chunked(&frame.vertices(model));
+        if chunks.len() as u64 > limits.max_buffer_size {
+            return Err(opened.unfit(format!("its buffers are too small for {} vertices", model.vertices().len())));
+        }
         let capacity = capacity
             .min(limits.max_storage_buffer_binding_size as usize / size_of::<Found>())
-            .min(limits.max_compute_workgroups_per_dimension as usize * WORKGROUP as usize);
+            .min(limits.max_compute_workgroups_per_dimension as usize * WORKGROUP as usize)
+            .min(TESTS_A_ROUND / model.vertices().len().max(1))
+            .max(WORKGROUP as usize)
+            .min(capacity.max(1));
         let buffer = |label, size: usize, usage| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -85,9 +98,8 @@ impl GpuPass {
                 mapped_at_creation: false,
             })
         };
-        let chunks = chunked(&frame.vertices(model));
         let vertices = buffer("chunks", chunks.len(), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        gpu.queue.write_buffer(&vertices, 0, &chunks);
+        opened.queue.write_buffer(&vertices, 0, &chunks);
         let round = buffer("round", size_of::<Round>(), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
         let queries = buffer("queries", capacity * size_of::<Query>(), BufferUsages::STORAGE | BufferUsages::COPY_DST);
         let found_bytes = capacity * size_of::<Found>();
@@ -129,30 +141,66 @@ impl GpuPass {
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
-        gpu.check()?;
+        opened.check()?;
         let chunks = (chunks.len() as u64 / CHUNK_BYTES) as u32;
-        Ok(GpuPass { gpu, pipeline, bindings, round, queries, found, readback, chunks, capacity })
+        Ok(GpuPass {
+            model,
+            frame,
+            device: opened,
+            pipeline,
+            bindings,
+            round,
+            queries,
+            found,
+            readback,
+            chunks,
+            capacity,
+        })
     }
 
     /// The adapter on which it runs.
-    pub fn gpu(&self) -> &Gpu {
-        &self.gpu
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// Waits for a submission and copies what it found.
+    fn read(
+        &self,
+        submission: wgpu::SubmissionIndex,
+        mapped: &mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+        found: &mut [Found],
+    ) -> Result<(), GpuError> {
+        self.wait(submission)?;
+        self.device.check()?;
+        mapped.recv().map_err(|e| self.device.failed(e))?.map_err(|e| self.device.failed(e))?;
+        let bytes = size_of_val(found) as u64;
+        let view = self.readback.get_mapped_range(0..bytes).map_err(|e| self.device.failed(e))?;
+        bytemuck::cast_slice_mut(found).copy_from_slice(&view);
+        Ok(())
     }
 
     fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
         let wait = PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
-        match self.gpu.device.poll(wait) {
+        match self.device.device.poll(wait) {
             Ok(_) => Ok(()),
             Err(wgpu::PollError::Timeout) => {
-                Err(GpuError::Timeout { adapter: self.gpu.summary().name.clone(), seconds: PATIENCE.as_secs() })
+                Err(GpuError::Timeout { adapter: self.device.summary().name.clone(), seconds: PATIENCE.as_secs() })
             }
-            Err(other) => Err(self.gpu.failed(other)),
+            Err(other) => Err(self.device.failed(other)),
         }
     }
 }
 
-impl CandidatePass for GpuPass {
+impl CandidatePass for GpuPass<'_> {
     type Error = GpuError;
+
+    fn model(&self) -> &Model {
+        self.model
+    }
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
 
     fn capacity(&self) -> usize {
         self.capacity
@@ -163,7 +211,7 @@ impl CandidatePass for GpuPass {
         if queries.is_empty() {
             return Ok(());
         }
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        let (device, queue) = (&self.device.device, &self.device.queue);
         let count = queries.len() as u32;
         queue.write_buffer(&self.round, 0, bytemuck::bytes_of(&Round { queries: count, unused: [0; 3] }));
         queue.write_buffer(&self.queries, 0, bytemuck::cast_slice(queries));
@@ -184,14 +232,10 @@ impl CandidatePass for GpuPass {
             let _ = sender.send(result);
         });
         let submission = queue.submit([encoder.finish()]);
-        self.wait(submission)?;
-        self.gpu.check()?;
-        mapped.recv().map_err(|e| self.gpu.failed(e))?.map_err(|e| self.gpu.failed(e))?;
-        let view = self.readback.get_mapped_range(0..bytes).map_err(|e| self.gpu.failed(e))?;
-        bytemuck::cast_slice_mut(found).copy_from_slice(&view);
-        drop(view);
+        let read = self.read(submission, &mapped, found);
+        // Also after an error, so that the next round finds the buffer free.
         self.readback.unmap();
-        Ok(())
+        read
     }
 }
 

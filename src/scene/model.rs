@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec2;
 
 use super::{Scene, WallIndex};
-use crate::geometry::{CoordinateFault, between, check_point, orient};
+use crate::geometry::{CoordinateFault, between, check_point, forwards, orient, same_side};
 
 /// Why a rope cannot be tied where the anchor is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -49,11 +49,13 @@ impl Model {
         let anchor = check_point(anchor.or(scene.anchor()).ok_or(AnchorError::Missing)?)?;
         let index = WallIndex::new(&scene);
         let numbers = scene.vertices().iter().zip(0..).map(|(p, v)| (p.to_array().map(f64::to_bits), v)).collect();
-        for wall in index.near(anchor, anchor) {
-            let ends @ [u, v] = scene.ends(wall as usize);
-            if orient(u, v, anchor) == 0.0 && between(u, v, anchor) {
-                return Err(AnchorError::InsideWall { x: anchor.x, y: anchor.y, wall: wall as usize, ends });
-            }
+        let inside = |&wall: &u32| {
+            let [u, v] = scene.ends(wall as usize);
+            orient(u, v, anchor) == 0.0 && between(u, v, anchor)
+        };
+        if let Some(wall) = index.near(anchor, anchor).filter(inside).min() {
+            let (wall, ends) = (wall as usize, scene.ends(wall as usize));
+            return Err(AnchorError::InsideWall { x: anchor.x, y: anchor.y, wall, ends });
         }
         Ok(Model { scene, anchor, index, numbers })
     }
@@ -78,14 +80,23 @@ impl Model {
         self.scene.vertices()
     }
 
-    /// Whether the segment from `a` to `b` touches no wall at all, its ends included. O(log walls + walls near it).
+    /// Whether the segment from `a` to `b` touches no wall at all, its ends included. A wall that ends at `a` is none in the
+    /// way unless the segment runs along it, so that one can leave a wall's end. O(log walls + walls near it).
     pub fn is_clear(&self, a: DVec2, b: DVec2) -> bool {
         self.index.near(a.min(b), a.max(b)).all(|wall| {
             let [u, v] = self.scene.ends(wall as usize);
-            let apart = |p: f64, q: f64| (p > 0.0 && q > 0.0) || (p < 0.0 && q < 0.0);
+            if let Some(end) = [(u, v), (v, u)].iter().find(|e| e.0 == a).map(|e| e.1) {
+                return orient(a, end, b) != 0.0 || forwards(end, a, b);
+            }
             // All on one line: the boxes meet, so the segments do.
-            apart(orient(u, v, a), orient(u, v, b)) || apart(orient(a, b, u), orient(a, b, v))
+            same_side(orient(u, v, a), orient(u, v, b)) || same_side(orient(a, b, u), orient(a, b, v))
         })
+    }
+
+    /// The lowest and highest x and y of all vertices and the anchor.
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        let start = (self.anchor, self.anchor);
+        self.vertices().iter().fold(start, |(low, high), &p| (low.min(p), high.max(p)))
     }
 
     /// The vertex that stands exactly at `p`, if there is one.

@@ -10,7 +10,7 @@ use glam::DVec2;
 use super::corner::Corner;
 use super::slide::{Stay, choose_sides, incoming, outgoing};
 use super::{SettledTrace, Trace, Violation, ViolationKind};
-use crate::geometry::{Hair, between, orient};
+use crate::geometry::{Hair, between, check_point, opposite, orient, same_side};
 use crate::scene::Model;
 
 /// How many steps share one look into the index. Traces move in small steps, so neighbours see the same few walls.
@@ -22,9 +22,13 @@ const STEPS_PER_LOOK: usize = 16;
 ///
 /// # Panics
 ///
-/// If the trace has no point or more than 2^31.
+/// If the trace has no point or more than 2^31, or one that [`check_point`] refuses. What [`read_traces`] gives is sound.
+///
+/// [`read_traces`]: super::read_traces
 pub fn settle(model: &Model, trace: &Trace) -> SettledTrace {
     assert!(!trace.points.is_empty() && trace.points.len() < 1 << 31, "a trace has 1 to 2^31 points");
+    let faulty = trace.points.iter().find_map(|&p| check_point(p).err());
+    assert!(faulty.is_none(), "trace {}: {}", trace.id, faulty.map_or(String::new(), |f| f.to_string()));
     let mut settler = Settler::new(model, trace);
     settler.walk();
     settler.pluck();
@@ -112,7 +116,7 @@ impl<'a> Settler<'a> {
             if a == b {
                 continue;
             }
-            if (from_a > 0.0 && from_b > 0.0) || (from_a < 0.0 && from_b < 0.0) {
+            if same_side(from_a, from_b) {
                 continue;
             }
             let (to_u, to_v) = (orient(a, b, u), orient(a, b, v));
@@ -206,27 +210,28 @@ impl<'a> Settler<'a> {
 
     /// Writes the hairs down, adding a point where a stay needs two.
     fn insert(&mut self, stays: &[Stay], chosen: Vec<(u32, Vec<Hair>)>) {
-        let mut shift = 0;
+        // The points before which another is added at the same place: it takes the first hair, they the second.
+        let mut doubled: Vec<usize> = Vec::new();
         for (stay, hairs) in chosen {
             let stay = &stays[stay as usize];
-            for i in stay.first..stay.end {
-                self.settled.hairs.push(((i + shift) as u32, hairs[0]));
-            }
+            let shift = doubled.len();
+            self.settled.hairs.extend((stay.first..stay.end).map(|i| ((i + shift) as u32, hairs[0])));
             if let Some(&second) = hairs.get(1) {
-                // The stay's last point moves on to the second hair, and a point with the first is added before it.
-                let i = stay.end - 1 + shift;
-                self.settled.points.insert(i, stay.at);
-                let place = self.settled.added.partition_point(|&a| (a as usize) < i);
-                self.settled.added[place..].iter_mut().for_each(|a| *a += 1);
-                self.settled.added.insert(place, i as u32);
-                self.settled.hairs.push((i as u32 + 1, second));
-                shift += 1;
+                self.settled.hairs.push(((stay.end + shift) as u32, second));
+                doubled.push(stay.end - 1);
             }
         }
+        if doubled.is_empty() {
+            return;
+        }
+        let shifted = |i: usize| (i + doubled.partition_point(|&d| d <= i)) as u32;
+        let mut added: Vec<u32> = self.settled.added.iter().map(|&a| shifted(a as usize)).collect();
+        added.extend(doubled.iter().map(|&d| shifted(d) - 1));
+        added.sort_unstable();
+        self.settled.added = added;
+        let copies = |i: usize| 1 + usize::from(doubled.binary_search(&i).is_ok());
+        let old = std::mem::take(&mut self.settled.points);
+        self.settled.points =
+            old.into_iter().enumerate().flat_map(|(i, p)| std::iter::repeat_n(p, copies(i))).collect();
     }
-}
-
-/// Whether two numbers have opposite signs. Their product would say so too, but for tiny numbers it is zero.
-fn opposite(p: f64, q: f64) -> bool {
-    (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0)
 }

@@ -34,7 +34,7 @@ pub struct Violation {
     pub wall: usize,
     /// That wall's endpoints.
     pub ends: [DVec2; 2],
-    /// Where the step starts.
+    /// Where the step starts; like all points in the scene's frame and unit.
     pub from: DVec2,
     /// Where it ends.
     pub to: DVec2,

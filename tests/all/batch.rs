@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use tautline::candidates::{CandidatePass, CpuPass, Found, Frame, ROOM, swept};
-use tautline::engine::{Cpu, Engine, EngineError, Gpu, Job, Reference};
+use tautline::engine::{Cpu, Engine, EngineError, Funnel, Gpu, Job, Note, Reference};
 use tautline::example::{Walker, floor_plan, walks};
 use tautline::gpu::GpuPass;
 use tautline::rope::TraceRecord;
@@ -11,14 +11,13 @@ use tautline::trace::{SettledTrace, Trace, settle};
 
 use crate::support::software;
 
-fn run(engine: &mut dyn Engine, model: &Model, traces: &[SettledTrace]) -> Vec<TraceRecord> {
-    engine.evaluate(model, traces, &Job::new()).unwrap()
+fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
+    engine.evaluate(traces, &Job::new()).unwrap()
 }
 
 /// The `gpu` engine with a given number of slots.
-fn gpu(model: &Model, slots: usize) -> Gpu {
-    let frame = Frame::new(model);
-    Gpu::with_pass(GpuPass::new(software(), model, &frame, slots).unwrap(), frame)
+fn gpu(model: &Model, slots: usize) -> Gpu<'_> {
+    Gpu::with_pass(GpuPass::new(software(), model, slots).unwrap())
 }
 
 fn settled(model: &Model, traces: &[Trace]) -> Vec<SettledTrace> {
@@ -33,10 +32,10 @@ fn example(walker: Walker, count: u64) -> (Model, Vec<SettledTrace>) {
 
 /// Compares both batch engines with the reference, which must have met events for that to mean anything.
 fn agree(model: &Model, traces: &[SettledTrace]) {
-    let truth = run(&mut Reference, model, traces);
+    let truth = run(&mut Reference::new(model), traces);
     assert!(truth.iter().any(|r| r.events.len() > 4), "nothing happened to compare");
-    assert_eq!(run(&mut Cpu::new(model), model, traces), truth);
-    assert_eq!(run(&mut gpu(model, 1 << 13), model, traces), truth);
+    assert_eq!(run(&mut Cpu::new(model), traces), truth);
+    assert_eq!(run(&mut gpu(model, 1 << 13), traces), truth);
 }
 
 #[test]
@@ -46,10 +45,10 @@ fn batches_larger_than_the_slots() {
     for (i, short) in walks(&model, Walker { step: 0.3, steps: 7, seed: 6 }, 40).into_iter().enumerate() {
         traces.insert(i * 2, settle(&model, &short));
     }
-    let truth = run(&mut Reference, &model, &traces);
+    let truth = run(&mut Reference::new(&model), &traces);
     for slots in [1, 3, 79, 80, 81] {
-        assert_eq!(run(&mut gpu(&model, slots), &model, &traces), truth, "{slots} slots");
-        assert_eq!(run(&mut Cpu::with_slots(&model, slots), &model, &traces), truth, "{slots} slots");
+        assert_eq!(run(&mut gpu(&model, slots), &traces), truth, "{slots} slots");
+        assert_eq!(run(&mut Cpu::with_slots(&model, slots), &traces), truth, "{slots} slots");
     }
 }
 
@@ -57,18 +56,18 @@ fn batches_larger_than_the_slots() {
 fn one_engine_serves_batch_after_batch() {
     let (model, traces) = example(Walker { step: 0.3, steps: 100, seed: 7 }, 20);
     let mut engine = gpu(&model, 16);
-    let truth = run(&mut Reference, &model, &traces);
-    assert_eq!(run(&mut engine, &model, &traces[..3]), truth[..3]);
-    assert_eq!(run(&mut engine, &model, &traces), truth);
+    let truth = run(&mut Reference::new(&model), &traces);
+    assert_eq!(run(&mut engine, &traces[..3]), truth[..3]);
+    assert_eq!(run(&mut engine, &traces), truth);
 }
 
 #[test]
 fn windows_of_any_bound_change_nothing() {
     let (model, traces) = example(Walker { step: 0.2, steps: 300, seed: 8 }, 12);
-    let truth = run(&mut Reference, &model, &traces);
+    let truth = run(&mut Reference::new(&model), &traces);
     for window in [1, 2, 5, 64, 1000] {
-        assert_eq!(run(&mut gpu(&model, 64).window(window), &model, &traces), truth, "window {window}");
-        assert_eq!(run(&mut Cpu::new(&model).window(window), &model, &traces), truth, "window {window}");
+        assert_eq!(run(&mut gpu(&model, 64).window(window), &traces), truth, "window {window}");
+        assert_eq!(run(&mut Cpu::new(&model).window(window), &traces), truth, "window {window}");
     }
 }
 
@@ -78,15 +77,15 @@ fn empty_batches_and_traces_of_length_one() {
     let anchor = model.anchor();
     let one = |id, at| Trace { id, points: vec![at] };
     let traces = settled(&model, &[one(0, anchor), one(4, anchor + DVec2::new(0.5, 0.1)), one(9, anchor)]);
-    let truth = run(&mut Reference, &model, &traces);
+    let truth = run(&mut Reference::new(&model), &traces);
     assert_eq!(
         truth.iter().map(|r| (r.trace, r.steps, r.depth)).collect::<Vec<_>>(),
         [(0, 0, 0), (4, 0, 0), (9, 0, 0)]
     );
     assert_eq!(truth[1].length, anchor.distance(anchor + DVec2::new(0.5, 0.1)));
     for engine in [&mut gpu(&model, 8) as &mut dyn Engine, &mut Cpu::new(&model)] {
-        assert_eq!(run(engine, &model, &traces), truth);
-        assert_eq!(run(engine, &model, &[]), []);
+        assert_eq!(run(engine, &traces), truth);
+        assert_eq!(run(engine, &[]), []);
     }
 }
 
@@ -95,8 +94,33 @@ fn a_scene_without_walls() {
     let model = Model::new(Scene::default(), Some(DVec2::new(1.0, 2.0))).unwrap();
     let points = vec![DVec2::new(4.0, 6.0), DVec2::new(1.0, 3.0)];
     let traces = settled(&model, &[Trace { id: 0, points }]);
-    let record = run(&mut gpu(&model, 8), &model, &traces).remove(0);
-    assert_eq!((record.length, record.max_length, record.depth, record.pull), (1.0, 5.0, 0, Some(-DVec2::Y)));
+    for engine in [
+        &mut gpu(&model, 8) as &mut dyn Engine,
+        &mut Cpu::new(&model),
+        &mut Reference::new(&model),
+        &mut Funnel::new(&model),
+        &mut Note::new(&model),
+    ] {
+        let r = run(engine, &traces).remove(0);
+        assert_eq!((r.length, r.max_length, r.depth, r.pull), (1.0, 5.0, 0, Some(-DVec2::Y)), "{}", engine.name());
+    }
+}
+
+/// The baseline is right on a lone wrap and wrong on two in one step, of which it sees one.
+#[test]
+fn the_notes_listing_sees_one_event_a_step() {
+    let wall = |x: f64| [DVec2::new(x, 0.0), DVec2::new(x, 5.0)];
+    let model = Model::new(Scene::new([wall(1.0), wall(2.0)]).unwrap(), Some(DVec2::new(0.0, 1.0))).unwrap();
+    let events = |engine: &mut dyn Engine, points: &[[f64; 2]]| {
+        let points = points.iter().copied().map(DVec2::from).collect();
+        let record = run(engine, &[settle(&model, &Trace { id: 0, points })]).remove(0);
+        record.events.iter().map(|e| (e.step, e.vertex)).collect::<Vec<_>>()
+    };
+    let slowly = [[0.0, -1.0], [1.5, -1.0], [1.5, 0.5], [1.9, -0.5], [3.0, -0.5], [3.0, 1.0]];
+    assert_eq!(events(&mut Note::new(&model), &slowly), events(&mut Reference::new(&model), &slowly));
+    let at_once = [[0.0, -1.0], [1.5, -1.5], [4.0, 0.5]];
+    assert_eq!(events(&mut Reference::new(&model), &at_once).len(), 2);
+    assert_eq!(events(&mut Note::new(&model), &at_once).len(), 1);
 }
 
 /// 60 wall ends on an arc about the anchor, swept in a few steps: each step meets more than a query has room for.
@@ -110,7 +134,7 @@ fn overflowing_queries_are_evaluated_exactly() {
     let frame = Frame::new(&model);
     let mut found = [Found::default()];
     let query = swept(&frame, model.anchor(), &points[1..3]).query;
-    CpuPass::new(&model, &frame, 1).run(&[query], &mut found).unwrap();
+    CpuPass::new(&model, 1).run(&[query], &mut found).unwrap();
     assert!(found[0].count as usize > ROOM && found[0].candidates().is_none(), "no overflow: {found:?}");
     // The first leg, from the anchor to the ring, is clear: it goes below all walls.
     let traces = settled(&model, &[Trace { id: 0, points }]);
@@ -145,10 +169,10 @@ fn scenes_of_several_chunks() {
 #[test]
 fn a_stopped_job_ends_early() {
     let (model, traces) = example(Walker { step: 0.3, steps: 100, seed: 1 }, 4);
-    for engine in [&mut gpu(&model, 2) as &mut dyn Engine, &mut Cpu::new(&model), &mut Reference] {
+    for engine in [&mut gpu(&model, 2) as &mut dyn Engine, &mut Cpu::new(&model), &mut Reference::new(&model)] {
         let job = Job::new();
         job.stop();
-        assert!(matches!(engine.evaluate(&model, &traces, &job), Err(EngineError::Stopped)), "{}", engine.name());
+        assert!(matches!(engine.evaluate(&traces, &job), Err(EngineError::Stopped)), "{}", engine.name());
         assert_eq!(job.steps(), 0);
     }
 }

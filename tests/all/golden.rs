@@ -1,17 +1,16 @@
 //! Every golden case, rope by rope, without a tolerance.
 
 use crate::support;
-use tautline::engine::{Cpu, Engine, Funnel, Reference};
-use tautline::scene::Model;
+use tautline::engine::{Cpu, Funnel, Reference};
 
 #[test]
 fn reference_gives_the_golden_ropes() {
-    support::compare_with_cases(|_| Box::new(Reference));
+    support::compare_with_cases(|model| Box::new(Reference::new(model)));
 }
 
 #[test]
 fn funnel_gives_the_golden_ropes() {
-    support::compare_with_cases(|_| Box::new(Funnel));
+    support::compare_with_cases(|model| Box::new(Funnel::new(model)));
 }
 
 #[test]
@@ -21,5 +20,5 @@ fn cpu_gives_the_golden_ropes() {
 
 #[test]
 fn gpu_gives_the_golden_ropes() {
-    support::compare_with_cases(|model: &Model| -> Box<dyn Engine> { Box::new(support::gpu(model)) });
+    support::compare_with_cases(|model| Box::new(support::gpu(model)));
 }

@@ -2,6 +2,7 @@
 
 mod batch;
 mod cli;
+mod conservative;
 mod golden;
 mod random;
 mod scenes;

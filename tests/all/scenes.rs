@@ -29,10 +29,13 @@ pub(crate) enum Kind {
     /// Random, scaled by 2^-380.
     Tiny,
     /// Random, scaled by 2^400.
+    /// Random, scaled by 2^380.
     Huge,
+    /// Random, with steps of up to 2^60 scenes.
+    Far,
 }
 
-pub(crate) const KINDS: [Kind; 11] = [
+pub(crate) const KINDS: [Kind; 12] = [
     Kind::Random,
     Kind::Fine,
     Kind::Coarse,
@@ -44,6 +47,7 @@ pub(crate) const KINDS: [Kind; 11] = [
     Kind::Offset,
     Kind::Tiny,
     Kind::Huge,
+    Kind::Far,
 ];
 
 /// A scene and a trace as small integers; proptest shrinks these.
@@ -125,6 +129,7 @@ impl Recipe {
         let d = DVec2::new(f64::from(dx), f64::from(dy)) / 32768.0;
         match self.kind {
             Kind::Fine => here + d * self.scale() * 0.05,
+            Kind::Far => d * 2f64.powi(i32::from(dx.wrapping_mul(31).rem_euclid(61))),
             Kind::Coarse => here + d * self.scale() * 1.5,
             Kind::Lattice => (here * 2.0 + d * 8.0).round() / 2.0,
             Kind::Grid => (here * 4.0 + d * 12.0).round() / 4.0,

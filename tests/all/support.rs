@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde::Deserialize;
 use tautline::engine::{Engine, Gpu, Job};
-use tautline::gpu::{AdapterChoice, Gpu as Adapter};
+use tautline::gpu::{AdapterChoice, Device};
 use tautline::rope::{TraceRecord, replay};
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
@@ -76,7 +76,7 @@ impl Case {
 }
 
 /// Evaluates every golden case and compares every judged rope.
-pub(crate) fn compare_with_cases(engine: impl Fn(&Model) -> Box<dyn Engine>) {
+pub(crate) fn compare_with_cases(engine: impl for<'m> Fn(&'m Model) -> Box<dyn Engine + 'm>) {
     let (mut judged, mut wrong) = (0, vec![]);
     for case in cases() {
         let model = case.model();
@@ -84,7 +84,7 @@ pub(crate) fn compare_with_cases(engine: impl Fn(&Model) -> Box<dyn Engine>) {
         for trace in &settled {
             assert_eq!(trace.violation(), None, "{}", case.name);
         }
-        let records = engine(&model).evaluate(&model, &settled, &Job::new()).unwrap();
+        let records = engine(&model).evaluate(&settled, &Job::new()).unwrap();
         let (n, w) = case.differences(&model, &records);
         judged += n;
         wrong.extend(w);
@@ -94,11 +94,11 @@ pub(crate) fn compare_with_cases(engine: impl Fn(&Model) -> Box<dyn Engine>) {
 }
 
 /// The software adapter. A machine without one fails: the GPU engine is never left untested.
-pub(crate) fn software() -> Adapter {
-    Adapter::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}"))
+pub(crate) fn software() -> Device {
+    Device::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The `gpu` engine on the software adapter.
-pub(crate) fn gpu(model: &Model) -> Gpu {
+pub(crate) fn gpu(model: &Model) -> Gpu<'_> {
     Gpu::new(software(), model).unwrap()
 }

@@ -23,7 +23,7 @@ fn ropes(model: &Model, points: &[P]) -> Vec<String> {
     let settled = settle(model, &trace);
     assert_eq!(settled.violation(), None);
     let by = |engine: &mut dyn Engine| {
-        let record = engine.evaluate(model, std::slice::from_ref(&settled), &Job::new()).unwrap().remove(0);
+        let record = engine.evaluate(std::slice::from_ref(&settled), &Job::new()).unwrap().remove(0);
         let mut ropes = vec![];
         replay(model.anchor(), model.vertices(), points.len(), &record.events, |k, rope| {
             let contacts = rope.taut(points[k].into());
@@ -32,8 +32,8 @@ fn ropes(model: &Model, points: &[P]) -> Vec<String> {
         });
         ropes
     };
-    let ropes = by(&mut Reference);
-    assert_eq!(ropes, by(&mut Funnel));
+    let ropes = by(&mut Reference::new(model));
+    assert_eq!(ropes, by(&mut Funnel::new(model)));
     ropes
 }
 
@@ -167,6 +167,6 @@ fn a_trace_through_walls_comes_to_an_end() {
     let m = model([0.013, 0.017], &walls);
     let settled = settle(&m, &trace(&points));
     assert!(settled.violation().is_some());
-    let record = Reference.evaluate(&m, &[settled], &Job::new()).unwrap().remove(0);
+    let record = Reference::new(&m).evaluate(&[settled], &Job::new()).unwrap().remove(0);
     assert_eq!((record.status, record.steps), (Status::Violation, 41));
 }

@@ -25,8 +25,8 @@ pub(super) struct Mesh {
 impl Mesh {
     pub(super) fn new(model: &Model, traces: &[SettledTrace]) -> Result<Mesh, EngineError> {
         let mut vertices = model.vertices().to_vec();
-        let points = traces.iter().flat_map(|t| t.points()).chain(&vertices);
-        let (low, high) = points.fold((model.anchor(), model.anchor()), |(l, h), &p| (l.min(p), h.max(p)));
+        let points = traces.iter().flat_map(|t| t.points());
+        let (low, high) = points.fold(model.bounds(), |(l, h), &p| (l.min(p), h.max(p)));
         let centre = low / 2.0 + high / 2.0;
         let mut half = (high - low).max_element();
         if half == 0.0 {

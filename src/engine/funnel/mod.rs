@@ -14,7 +14,7 @@ mod word;
 use glam::DVec2;
 
 use self::mesh::Mesh;
-use self::path::Funnel as Tightener;
+use self::path::Path;
 use self::word::Word;
 use super::walk::Walk;
 use super::{Engine, EngineError, Job};
@@ -28,19 +28,29 @@ type Contact = (u32, Side);
 /// The engine that finds the taut rope anew from the trace's crossing word after every step.
 ///
 /// O(triangles crossed + length of the word) a step, on one thread.
-#[derive(Debug, Default, Clone, Copy)]
-pub struct Funnel;
+#[derive(Clone, Copy)]
+pub struct Funnel<'m> {
+    model: &'m Model,
+}
 
-impl Engine for Funnel {
+impl<'m> Funnel<'m> {
+    /// An engine for `model`.
+    pub fn new(model: &'m Model) -> Self {
+        Funnel { model }
+    }
+}
+
+impl Engine for Funnel<'_> {
     fn name(&self) -> &'static str {
         "funnel"
     }
 
-    fn evaluate(&mut self, model: &Model, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        let model = self.model;
         let mesh = Mesh::new(model, traces)?;
         let mut walk = Walk::new();
         let mut word = Word::default();
-        let mut funnel = Tightener::default();
+        let mut path = Path::default();
         let mut records = Vec::with_capacity(traces.len());
         for trace in traces {
             walk.start(model, trace);
@@ -50,11 +60,12 @@ impl Engine for Funnel {
                 let to = walk.at + 1;
                 word.go(&mesh, trace.point(to - 1), trace.point(to));
                 if trace.ends_step(to) {
-                    let taut = funnel.tighten(&mesh, model.anchor(), word.portals(), trace.points()[to]);
+                    let taut = path.tighten(&mesh, model.anchor(), word.portals(), trace.points()[to]);
                     change(&mut walk, trace, model.vertices(), taut);
                 }
+                let before = trace.step(walk.at);
                 walk.arrive(trace);
-                job.count(1);
+                job.count(trace.step(walk.at) - before);
             }
             records.push(walk.record(trace));
         }

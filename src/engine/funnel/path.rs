@@ -15,17 +15,17 @@ struct Point {
     contact: Option<Contact>,
 }
 
-/// The funnel: the path so far, up to its apex, and from there the shortest paths to both ends of the last portal, each
+/// The path so far, up to its apex, and the funnel from there: the shortest paths to both ends of the last portal, each
 /// bent inwards.
 #[derive(Debug, Default)]
-pub(super) struct Funnel {
+pub(super) struct Path {
     path: Vec<Point>,
     left: Vec<Point>,
     right: Vec<Point>,
     taut: Vec<Contact>,
 }
 
-impl Funnel {
+impl Path {
     /// The contacts of the shortest path from `from` through all `portals` to `to`, without those passed straight and
     /// those on which it starts or ends. O(portals).
     pub(super) fn tighten(&mut self, mesh: &Mesh, from: DVec2, portals: &[Portal], to: DVec2) -> &[Contact] {
