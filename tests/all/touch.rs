@@ -100,6 +100,18 @@ fn a_slide_rounds_the_tip_of_a_wall() {
 }
 
 #[test]
+fn slides_round_a_tip_there_and_back() {
+    let mut walls = BOX.to_vec();
+    walls.push([[2.0, 2.0], [5.0, 5.0]]);
+    let m = model([3.0, 1.0], &walls);
+    let there = [[2.0, 0.0], [2.0, 2.0], [5.0, 5.0], [2.0, 2.0], [0.0, 2.0]];
+    let back = [[2.0, 2.0], [5.0, 5.0], [5.0, 5.0], [2.0, 2.0], [2.0, 0.0]];
+    let all = [&there[..], &back, &there[1..], &back].concat();
+    let round = ["", "", "", "4<", "4<", "4<", "", "", "", "", "", "", "4<", "4<", "4<", "", "", "", ""];
+    assert_eq!(ropes(&m, &all), round);
+}
+
+#[test]
 fn a_step_passes_several_ends_at_once() {
     // Three posts in a row: their ends lie on one line, which the step follows. They stand below it.
     let posts = [0.0, 1.0, 2.0].map(|x| [[x, 0.0], [x, -1.0]]);
