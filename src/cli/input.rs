@@ -106,7 +106,7 @@ pub(crate) fn settle_all(
             Err(Failure::input(anyhow!("{file}{first}; {hint}{more}")))
         }
         (Some(_), OnViolation::Flag) => {
-            const SHOWN: usize = 5;
+            const SHOWN: usize = 1000;
             violations.iter().take(SHOWN).for_each(|v| eprintln!("warning: {file}{v}"));
             if violations.len() > SHOWN {
                 let more = violations.len() - SHOWN;

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use tautline::engine::{Engine, Funnel, Job, Reference};
 use tautline::rope::{Status, replay};
-use tautline::scene::{Model, Scene};
+use tautline::scene::{Model, Scene, read_scene};
 use tautline::trace::{Trace, ViolationKind, settle};
 
 type P = [f64; 2];
@@ -146,6 +146,38 @@ fn steps_that_break_the_rules_are_named() {
     assert_eq!(violation(&m, &[[0.0, 0.0], [0.0, 0.0], [1.0, 1.0]]), Some((2, SlipsThrough, 0)));
     // Touching from outside is legal in every way.
     assert_eq!(violation(&m, &[[0.0, 0.0], [-1.0, 1.0], [0.0, 2.0], [3.0, 2.0], [2.0, 0.0], [2.0, 2.0]]), None);
+}
+
+/// Along real coasts from vertex to vertex, resting on them, cutting corners and leaving them again, as planners' shortest
+/// paths do.
+#[test]
+fn traces_along_real_coasts() {
+    let scene = read_scene(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/aegean.geojson").as_ref()).unwrap();
+    let coast = scene.vertices().to_vec();
+    let mut touched = 0;
+    for start in (0..coast.len()).step_by(97) {
+        let m = Model::new(scene.clone(), Some(coast[start])).unwrap();
+        let (mut here, mut points, mut draw) = (start, vec![coast[start]], start as u64);
+        for _ in 0..60 {
+            // Knuth's linear congruential generator.
+            draw = draw.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let last = points[points.len() - 1];
+            let there = (here + 1 + (draw >> 60) as usize / 4).min(coast.len() - 1);
+            let next = match (draw >> 40) % 4 {
+                0 => last + DVec2::from_angle((draw >> 50) as f64) * 0.7,
+                1 => coast[here.saturating_sub(1)],
+                _ => coast[there],
+            };
+            points.push(next);
+            if settle(&m, &Trace { id: 0, points: points.clone() }).violation().is_some() {
+                points.pop();
+            } else if let Some(vertex) = m.vertex_at(next) {
+                (here, touched) = (vertex as usize, touched + 1);
+            }
+        }
+        ropes(&m, &points.iter().map(|p| p.to_array()).collect::<Vec<_>>());
+    }
+    assert!(touched > 1000, "only {touched} points stand on vertices");
 }
 
 /// The product of two areas of the smallest scenes underflows to zero.
