@@ -155,6 +155,22 @@ fn meets_before(o: DVec2, p: DVec2, q: DVec2, dir: f64) -> bool {
 mod tests {
     use super::*;
 
+    #[test]
+    fn vertices_on_one_line_are_pushed_nearest_first() {
+        let p = |x: f64, y: f64| DVec2::new(x, y);
+        let vertices = [p(2.0, 0.0), p(3.0, 0.0), p(1.0, 0.0)];
+        let mut rope = Rope::new(DVec2::ZERO);
+        let leg = Leg { a0: p(5.0, -1.0).into(), a1: p(5.0, 1.0).into() };
+        let mut sweep = Sweep::default();
+        let mut wraps = || sweep.next(&mut rope, &leg, &vertices, 0..3);
+        for vertex in [2, 0, 1] {
+            assert_eq!(wraps(), Some((EventKind::Wrap, vertex, Side::Left)));
+        }
+        assert_eq!(wraps(), None);
+        // Only the last is a corner of the taut rope.
+        assert_eq!(rope.taut(leg.a1.at).iter().map(|c| c.vertex).collect::<Vec<_>>(), [1]);
+    }
+
     /// The rope is wound round a wall and lies along it, so its last leg doubles back at the wall's end. Unwrapping the
     /// other end with the free end exactly on the wall's line must not unwrap both.
     #[test]
