@@ -4,16 +4,13 @@ use serde_json::json;
 use tautline::trace::{Violation, ViolationKind};
 
 use super::failure::Failure;
-use super::input::{OnViolation, SceneArgs, settle_all};
+use super::input::InputArgs;
 use super::{interrupt, print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
-    input: SceneArgs,
-    /// What to do with a trace that crosses a wall
-    #[arg(long, value_enum, default_value = "error")]
-    on_violation: OnViolation,
+    input: InputArgs,
     /// Print one JSON document
     #[arg(long)]
     json: bool,
@@ -25,7 +22,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let scene = model.scene();
     let settled = match args.input.traces {
         None if args.input.scene.is_some() => None,
-        _ => Some(settle_all(&args.input, &model, args.input.read_traces(&model)?, args.on_violation)?),
+        _ => Some(args.input.settle(&model, args.input.read_traces(&model)?)?),
     };
     let anchor = model.anchor();
     let counts = settled.map(|settled| {

@@ -11,7 +11,7 @@ use tautline::scene::Model;
 
 use super::engine::EngineArgs;
 use super::failure::Failure;
-use super::input::{OnViolation, SceneArgs, settle_all};
+use super::input::InputArgs;
 use super::interrupt::{self, Writing};
 use super::progress::with_progress;
 use super::summary::Summary;
@@ -20,7 +20,7 @@ use super::{print, print_json};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
-    input: SceneArgs,
+    input: InputArgs,
     /// Where to write one row a trace: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -29,9 +29,6 @@ pub(crate) struct Args {
     events: Option<PathBuf>,
     #[command(flatten)]
     engine: EngineArgs,
-    /// What to do with a trace that crosses a wall
-    #[arg(long, value_enum, default_value = "error")]
-    on_violation: OnViolation,
     /// Print the summary as one JSON document
     #[arg(long)]
     json: bool,
@@ -50,7 +47,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         eprintln!("note: {} walls of zero length were dropped", model.scene().dropped());
     }
     let traces = args.input.read_traces(&model)?;
-    let settled = settle_all(&args.input, &model, traces, args.on_violation)?;
+    let settled = args.input.settle(&model, traces)?;
     let (mut engine, on) = args.engine.open(&model)?;
     let prepared = start.elapsed();
 

@@ -17,7 +17,7 @@ const EXAMPLE_WALK: Walker = Walker { step: 0.25, steps: 500, seed: 1 };
 
 /// Where the walls are and the rope is tied.
 #[derive(Debug, clap::Args)]
-pub(crate) struct SceneArgs {
+pub(crate) struct InputArgs {
     /// The walls: GeoJSON (.geojson, .json) or a MovingAI grid map (.map)
     #[arg(long, value_name = "FILE")]
     pub scene: Option<PathBuf>,
@@ -27,6 +27,9 @@ pub(crate) struct SceneArgs {
     /// The traces: .csv with columns trace,x,y, or .parquet with the same columns
     #[arg(long, value_name = "FILE")]
     pub traces: Option<PathBuf>,
+    /// What to do with a trace that crosses a wall
+    #[arg(long, value_enum, default_value = "error")]
+    on_violation: OnViolation,
 }
 
 /// Two numbers with a comma between them.
@@ -37,7 +40,7 @@ fn point(text: &str) -> Result<DVec2, String> {
     Ok(DVec2::new(number(x)?, number(y)?))
 }
 
-impl SceneArgs {
+impl InputArgs {
     /// The scene's name in reports.
     pub(crate) fn name(&self) -> String {
         self.scene.as_deref().map_or("the built-in floor plan".to_owned(), |p| p.display().to_string())
@@ -71,6 +74,34 @@ impl SceneArgs {
             (None, Some(_)) => Err(Failure::input(anyhow!("--scene needs --traces: a .csv or .parquet of points"))),
         }
     }
+
+    /// Settles all traces, on all cores, and consumes them.
+    pub(crate) fn settle(&self, model: &Model, traces: Vec<Trace>) -> Result<Vec<SettledTrace>, Failure> {
+        let file = self.traces.as_deref().map_or(String::new(), |p| format!("{}: ", p.display()));
+        let settled: Vec<SettledTrace> = traces.into_par_iter().map(|trace| settle(model, &trace)).collect();
+        let violations: Vec<_> = settled.iter().filter_map(|t| t.violation()).collect();
+        match (violations.first(), self.on_violation) {
+            (Some(first), OnViolation::Error) => {
+                let more = match violations.len() - 1 {
+                    0 => String::new(),
+                    more => format!(" ({more} more traces cross walls)"),
+                };
+                let hint = "--on-violation flag marks such traces and goes on";
+                Err(Failure::input(anyhow!("{file}{first}; {hint}{more}")))
+            }
+            (Some(_), OnViolation::Flag) => {
+                const SHOWN: usize = 1000;
+                violations.iter().take(SHOWN).for_each(|v| eprintln!("warning: {file}{v}"));
+                if violations.len() > SHOWN {
+                    let more = violations.len() - SHOWN;
+                    let list = "`tautline check --on-violation flag --json` lists them all";
+                    eprintln!("warning: and {more} more traces that cross walls; {list}");
+                }
+                Ok(settled)
+            }
+            (None, _) => Ok(settled),
+        }
+    }
 }
 
 fn is_geojson(path: &Path) -> bool {
@@ -79,41 +110,9 @@ fn is_geojson(path: &Path) -> bool {
 
 /// What to do with a trace that breaks the small update condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum OnViolation {
+enum OnViolation {
     /// Stop, and name the first
     Error,
     /// Mark such traces in the results and go on
     Flag,
-}
-
-/// Settles all traces, on all cores, and consumes them; `input` is where they come from.
-pub(crate) fn settle_all(
-    input: &SceneArgs,
-    model: &Model,
-    traces: Vec<Trace>,
-    rule: OnViolation,
-) -> Result<Vec<SettledTrace>, Failure> {
-    let file = input.traces.as_deref().map_or(String::new(), |p| format!("{}: ", p.display()));
-    let settled: Vec<SettledTrace> = traces.into_par_iter().map(|trace| settle(model, &trace)).collect();
-    let violations: Vec<_> = settled.iter().filter_map(|t| t.violation()).collect();
-    match (violations.first(), rule) {
-        (Some(first), OnViolation::Error) => {
-            let more = match violations.len() - 1 {
-                0 => String::new(),
-                more => format!(" ({more} more traces cross walls)"),
-            };
-            let hint = "--on-violation flag marks such traces and goes on";
-            Err(Failure::input(anyhow!("{file}{first}; {hint}{more}")))
-        }
-        (Some(_), OnViolation::Flag) => {
-            const SHOWN: usize = 1000;
-            violations.iter().take(SHOWN).for_each(|v| eprintln!("warning: {file}{v}"));
-            if violations.len() > SHOWN {
-                let more = violations.len() - SHOWN;
-                eprintln!("warning: and {more} more traces that cross walls; `tautline check --json` lists them all");
-            }
-            Ok(settled)
-        }
-        (None, _) => Ok(settled),
-    }
 }

@@ -1,13 +1,12 @@
 //! Events: one row a push or pop.
 
-use std::io::Write;
 use std::path::Path;
 
 use glam::DVec2;
 
 use super::columns::EventColumns;
-use super::tables::Table;
-use super::{Format, WholeFile, WriteError, text};
+use super::rows::Rows;
+use super::{WholeFile, WriteError, text};
 use crate::rope::TraceRecord;
 
 /// Writes the events of traces to a file that appears when it is finished.
@@ -15,13 +14,7 @@ use crate::rope::TraceRecord;
 /// `.jsonl`, `.csv` and `.parquet` have the same columns: `trace`, `step`, `kind` (`wrap` or `unwrap`), `vertex` (the
 /// scene's number of it), `x`, `y` (where it stands), `side` (`left` or `right`). Memory is bounded; it does not grow
 /// with the number of events.
-pub struct EventWriter(Rows);
-
-enum Rows {
-    Jsonl(WholeFile),
-    Csv(WholeFile),
-    Parquet(Box<Table<EventColumns>>),
-}
+pub struct EventWriter(Rows<EventColumns>);
 
 impl EventWriter {
     /// Starts the file at `path`, in the format that its extension names.
@@ -30,16 +23,7 @@ impl EventWriter {
     ///
     /// Those of [`check_output`](super::check_output).
     pub fn create(path: &Path) -> Result<Self, WriteError> {
-        let format = Format::of(path)?;
-        let mut file = WholeFile::create(path)?;
-        Ok(EventWriter(match format {
-            Format::Jsonl => Rows::Jsonl(file),
-            Format::Csv => {
-                writeln!(file, "{}", text::EVENT_HEADER).map_err(|cause| file.error(cause))?;
-                Rows::Csv(file)
-            }
-            Format::Parquet => Rows::Parquet(Box::new(Table::new(path, file)?)),
-        }))
+        Ok(EventWriter(Rows::create(path, text::EVENT_HEADER)?))
     }
 
     /// Adds the events of one trace; `vertices` are the scene's.
@@ -86,10 +70,7 @@ impl EventWriter {
     ///
     /// What the operating system says, or that an earlier write failed.
     pub fn complete(self) -> Result<WholeFile, WriteError> {
-        match self.0 {
-            Rows::Jsonl(file) | Rows::Csv(file) => file.complete(),
-            Rows::Parquet(table) => table.complete(),
-        }
+        self.0.complete()
     }
 }
 

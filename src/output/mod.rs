@@ -7,6 +7,7 @@
 mod columns;
 mod events;
 mod results;
+mod rows;
 mod tables;
 mod text;
 mod whole_file;

@@ -1,11 +1,10 @@
 //! Results: one row a trace.
 
-use std::io::Write;
 use std::path::Path;
 
 use super::columns::ResultColumns;
-use super::tables::Table;
-use super::{Format, WholeFile, WriteError, text};
+use super::rows::Rows;
+use super::{WholeFile, WriteError, text};
 use crate::rope::TraceRecord;
 
 /// Writes results one by one to a file that appears when it is finished.
@@ -18,13 +17,7 @@ use crate::rope::TraceRecord;
 ///   structs but no lists of fixed size, so this reads alike in pandas, polars and DuckDB.
 ///
 /// Lengths are in the scene's unit. Memory is bounded; it does not grow with the number of results.
-pub struct ResultWriter(Rows);
-
-enum Rows {
-    Jsonl(WholeFile),
-    Csv(WholeFile),
-    Parquet(Box<Table<ResultColumns>>),
-}
+pub struct ResultWriter(Rows<ResultColumns>);
 
 impl ResultWriter {
     /// Starts the file at `path`, in the format that its extension names.
@@ -33,16 +26,7 @@ impl ResultWriter {
     ///
     /// Those of [`check_output`](super::check_output).
     pub fn create(path: &Path) -> Result<Self, WriteError> {
-        let format = Format::of(path)?;
-        let mut file = WholeFile::create(path)?;
-        Ok(ResultWriter(match format {
-            Format::Jsonl => Rows::Jsonl(file),
-            Format::Csv => {
-                writeln!(file, "{}", text::RESULT_HEADER).map_err(|cause| file.error(cause))?;
-                Rows::Csv(file)
-            }
-            Format::Parquet => Rows::Parquet(Box::new(Table::new(path, file)?)),
-        }))
+        Ok(ResultWriter(Rows::create(path, text::RESULT_HEADER)?))
     }
 
     /// Adds one result.
@@ -77,10 +61,7 @@ impl ResultWriter {
     ///
     /// What the operating system says, or that an earlier write failed.
     pub fn complete(self) -> Result<WholeFile, WriteError> {
-        match self.0 {
-            Rows::Jsonl(file) | Rows::Csv(file) => file.complete(),
-            Rows::Parquet(table) => table.complete(),
-        }
+        self.0.complete()
     }
 }
 
