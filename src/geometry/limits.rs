@@ -58,6 +58,16 @@ fn check(c: f64) -> Result<f64, CoordinateFault> {
     }
 }
 
+/// A point as messages show it: `(1, -2.5)`, with exponents where plain digits would be many.
+pub(crate) struct Shown(pub DVec2);
+
+impl std::fmt::Display for Shown {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let show = |c: f64| if c == 0.0 || (1e-5..1e16).contains(&c.abs()) { c.to_string() } else { format!("{c:e}") };
+        write!(f, "({}, {})", show(self.0.x), show(self.0.y))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

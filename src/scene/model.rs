@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec2;
 
 use super::{Scene, WallIndex};
-use crate::geometry::{CoordinateFault, between, check_point, forwards, orient, same_side};
+use crate::geometry::{CoordinateFault, Shown, between, check_point, forwards, orient, same_side};
 
 /// Why a rope cannot be tied where the anchor is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -17,12 +17,13 @@ pub enum AnchorError {
     #[error("the anchor: {0}")]
     Coordinate(#[from] CoordinateFault),
     /// It stands in a wall, between its ends.
-    #[error("the anchor ({x}, {y}) lies inside wall {wall}, from ({}, {}) to ({}, {}); it may stand at a wall's end or off the walls", ends[0].x, ends[0].y, ends[1].x, ends[1].y)]
+    #[error(
+        "the anchor {} lies inside wall {wall}, from {} to {}; it may stand at a wall's end or off the walls",
+        Shown(*anchor), Shown(ends[0]), Shown(ends[1])
+    )]
     InsideWall {
-        /// The anchor's x.
-        x: f64,
-        /// The anchor's y.
-        y: f64,
+        /// Where it stands.
+        anchor: DVec2,
         /// Which wall, counted from 0.
         wall: usize,
         /// That wall's endpoints.
@@ -55,7 +56,7 @@ impl Model {
         };
         if let Some(wall) = index.near(anchor, anchor).filter(inside).min() {
             let (wall, ends) = (wall as usize, scene.ends(wall as usize));
-            return Err(AnchorError::InsideWall { x: anchor.x, y: anchor.y, wall, ends });
+            return Err(AnchorError::InsideWall { anchor, wall, ends });
         }
         Ok(Model { scene, anchor, index, numbers })
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geometry::{Hair, TracePoint};
+use crate::geometry::{Hair, Shown, TracePoint};
 
 /// What a trace does that a rope among solid walls cannot follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,14 +15,23 @@ pub enum ViolationKind {
     SlipsThrough,
 }
 
+impl ViolationKind {
+    fn verb(self) -> &'static str {
+        match self {
+            ViolationKind::Crosses => "crosses",
+            ViolationKind::EndsInside => "ends inside",
+            ViolationKind::SlipsThrough => "slips between the walls at the end of",
+        }
+    }
+}
+
 /// A step that breaks the small update condition: point k must be visible from point k-1, and point 0 from the anchor.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("trace {trace}, step {step}: the move from ({}, {}) to ({}, {}) {} wall {wall}, from ({}, {}) to ({}, {}); each point must be visible from the one before, the first from the anchor",
-    from.x, from.y, to.x, to.y, match kind {
-        ViolationKind::Crosses => "crosses",
-        ViolationKind::EndsInside => "ends inside",
-        ViolationKind::SlipsThrough => "slips between the walls at the end of",
-    }, ends[0].x, ends[0].y, ends[1].x, ends[1].y)]
+#[error(
+    "trace {trace}, step {step}: the move from {} to {} {} wall {wall}, from {} to {}; each point must be visible from \
+    the one before, the first from the anchor",
+    Shown(*from), Shown(*to), kind.verb(), Shown(ends[0]), Shown(ends[1])
+)]
 pub struct Violation {
     /// The trace's number.
     pub trace: u64,

@@ -30,9 +30,11 @@ pub(super) fn outgoing(sides: &[Turn], i: usize) -> Turn {
 }
 
 /// Chooses on which side of the walls each slide of a run of corners goes: one that connects at every corner; of those,
-/// the one on the side that the trace comes from and goes on to, without rounding tips needlessly; else the left.
+/// one that rounds no tip needlessly; of those, the one on the side that the trace comes from and goes on to; else the left.
 pub(super) fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&Stay>) -> Vec<Turn> {
     const SLIPS: u32 = 1 << 16;
+    // More than the two sides on which a slide can be wrong: a trace that turns back on a wall's end winds round nothing.
+    const TIP: u32 = 3;
     const BOTH: [Turn; 2] = [Turn::Left, Turn::Right];
     let slides = run.len() - 1;
     if slides == 0 {
@@ -40,7 +42,7 @@ pub(super) fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&S
     }
     let corner = |i: usize| run[i].corner.as_ref().expect("a run is made of corners");
     let cost_of = |i: usize, from: Way, to: Way| {
-        if corner(i).connects(from, to) { u32::from(corner(i).rounds_tip(from, to)) } else { SLIPS }
+        if corner(i).connects(from, to) { TIP * u32::from(corner(i).rounds_tip(from, to)) } else { SLIPS }
     };
     // Which side of the line from p to q the point lies on, against the side chosen.
     let other_side = |p: DVec2, q: DVec2, point: DVec2, side: Turn| {

@@ -69,6 +69,15 @@ fn a_slide_stays_on_the_side_that_it_comes_from() {
 }
 
 #[test]
+fn a_slide_there_and_back_winds_round_nothing() {
+    // Along the wall and back on one side of it. It comes from below and goes on to above, so that is the left: above.
+    let m = model([-1.0, -0.5], &LONE);
+    assert_eq!(ropes(&m, &[[0.0, 0.0], [4.0, 0.0], [0.0, 0.0], [-1.0, 0.5]]), ["", "0>", "", ""]);
+    // It comes from below and goes on to below.
+    assert_eq!(ropes(&m, &[[0.0, 0.0], [4.0, 0.0], [0.0, 0.0], [-1.0, -0.6]]), ["", "", "", ""]);
+}
+
+#[test]
 fn a_slide_straight_over_both_ends_goes_on_the_left() {
     // From east to west the left is below, where the anchor is; from west to east it is above.
     let m = model([2.0, -1.0], &LONE);
