@@ -26,7 +26,7 @@ where
 {
     let mut records: Vec<Option<TraceRecord>> = traces.iter().map(|_| None).collect();
     let mut waiting = traces.iter().enumerate();
-    let capacity = pass.capacity();
+    let (capacity, frame) = (pass.capacity(), *pass.frame());
     let mut slots: Vec<Slot<'_>> = waiting.by_ref().take(capacity).map(|t| Slot::new(pass.model(), t)).collect();
     let mut queries = vec![Query::default(); slots.len()];
     let mut found = vec![Found::default(); slots.len()];
@@ -49,7 +49,6 @@ where
             break;
         }
         let (queries, found) = (&mut queries[..slots.len()], &mut found[..slots.len()]);
-        let frame = *pass.frame();
         let ask = |(slot, query): (&mut Slot<'_>, &mut Query)| *query = slot.ask(&frame, window);
         slots.par_iter_mut().zip(queries.par_iter_mut()).with_min_len(64).for_each(ask);
         pass.run(queries, found)?;

@@ -113,10 +113,7 @@ impl<'a> Settler<'a> {
             if from_b == 0.0 && between(u, v, b) && self.model.vertex_at(b).is_none() {
                 self.violate(step, ViolationKind::EndsInside, wall);
             }
-            if a == b {
-                continue;
-            }
-            if same_side(from_a, from_b) {
+            if a == b || same_side(from_a, from_b) {
                 continue;
             }
             let (to_u, to_v) = (orient(a, b, u), orient(a, b, v));

@@ -9,7 +9,7 @@ use tautline::rope::TraceRecord;
 use tautline::scene::{Model, Scene, read_scene};
 use tautline::trace::{SettledTrace, Trace, settle};
 
-use crate::support::software;
+use crate::support::{posts, software};
 
 fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
     engine.evaluate(traces, &Job::new()).unwrap()
@@ -155,13 +155,7 @@ fn real_coasts() {
 /// More vertices than one uniform buffer holds.
 #[test]
 fn scenes_of_several_chunks() {
-    let n = 100;
-    let walls = (0..n * n).map(|k| {
-        let centre = DVec2::new(f64::from(k % n), f64::from(k / n));
-        let along = 0.4 * DVec2::from_angle(f64::from(k) * 2.4);
-        [centre - along, centre + along]
-    });
-    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(50.5, 49.5))).unwrap();
+    let model = posts();
     assert_eq!(model.vertices().len(), 20_000);
     agree(&model, &settled(&model, &walks(&model, Walker { step: 0.8, steps: 200, seed: 2 }, 10)));
 }

@@ -1,13 +1,12 @@
 //! That the comparison of the shader with the reference is able to fail.
 
-use glam::DVec2;
 use tautline::engine::{Engine, Gpu, Job, Reference};
 use tautline::example::{Walker, floor_plan, walks};
 use tautline::gpu::{GpuError, GpuPass, SWEEP_WGSL};
-use tautline::scene::{Model, Scene};
+use tautline::scene::Model;
 use tautline::trace::settle;
 
-use crate::support::software;
+use crate::support::{posts, software};
 
 /// Each changes one operator of the shader, or one number. (A shader that names too many vertices does no harm: its
 /// queries overflow and are evaluated in full. These name too few, or the wrong ones.)
@@ -22,17 +21,6 @@ const CHANGES: [(&str, &str); 9] = [
     ("2u * i + 1u < chunk.count", "2u * i + 1u > chunk.count"),
     ("chunk.count + 1u) / 2u", "chunk.count + 1u) / 4u"),
 ];
-
-/// A scene of 2 1/2 chunks.
-fn posts() -> Model {
-    let n = 100;
-    let walls = (0..n * n).map(|k| {
-        let centre = DVec2::new(f64::from(k % n), f64::from(k / n));
-        let along = 0.4 * DVec2::from_angle(f64::from(k) * 2.4);
-        [centre - along, centre + along]
-    });
-    Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(50.5, 49.5))).unwrap()
-}
 
 #[test]
 fn a_shader_with_one_operator_changed_is_found_out() {

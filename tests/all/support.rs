@@ -102,3 +102,14 @@ pub(crate) fn software() -> Device {
 pub(crate) fn gpu(model: &Model) -> Gpu<'_> {
     Gpu::new(software(), model).unwrap()
 }
+
+/// 20,000 wall ends: more vertices than two uniform buffers hold.
+pub(crate) fn posts() -> Model {
+    let n = 100;
+    let walls = (0..n * n).map(|k| {
+        let centre = DVec2::new(f64::from(k % n), f64::from(k / n));
+        let along = 0.4 * DVec2::from_angle(f64::from(k) * 2.4);
+        [centre - along, centre + along]
+    });
+    Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(50.5, 49.5))).unwrap()
+}
