@@ -52,6 +52,7 @@ where
         let ask = |(slot, query): (&mut Slot<'_>, &mut Query)| *query = slot.ask(&frame, window);
         slots.par_iter_mut().zip(queries.par_iter_mut()).with_min_len(64).for_each(ask);
         pass.run(queries, found)?;
+        job.count_tests((queries.len() * pass.model().vertices().len()) as u64);
         let model = pass.model();
         let advance = |(slot, found): (&mut Slot<'_>, &Found)| slot.advance(model, found);
         job.count(slots.par_iter_mut().zip(found.par_iter()).with_min_len(64).map(advance).sum());

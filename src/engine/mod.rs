@@ -5,12 +5,12 @@ mod batch;
 mod cpu;
 mod funnel;
 mod gpu;
+mod job;
 mod note;
 mod reference;
 mod walk;
 
 use std::convert::Infallible;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::gpu::GpuError;
 use crate::rope::TraceRecord;
@@ -19,6 +19,7 @@ use crate::trace::SettledTrace;
 pub use cpu::Cpu;
 pub use funnel::Funnel;
 pub use gpu::Gpu;
+pub use job::{Job, Phase};
 pub use note::Note;
 pub use reference::Reference;
 
@@ -63,37 +64,5 @@ pub enum EngineError {
 impl From<Infallible> for EngineError {
     fn from(never: Infallible) -> Self {
         match never {}
-    }
-}
-
-/// A running evaluation as seen from outside: how far it is, and the wish that it stop.
-#[derive(Debug, Default)]
-pub struct Job {
-    steps: AtomicU64,
-    stop: AtomicBool,
-}
-
-impl Job {
-    /// A job that nothing has been done of.
-    pub const fn new() -> Self {
-        Job { steps: AtomicU64::new(0), stop: AtomicBool::new(false) }
-    }
-
-    /// How many steps of traces are done.
-    pub fn steps(&self) -> u64 {
-        self.steps.load(Ordering::Relaxed)
-    }
-
-    /// Asks the engine to end with [`EngineError::Stopped`] as soon as it can.
-    pub fn stop(&self) {
-        self.stop.store(true, Ordering::Relaxed);
-    }
-
-    pub(crate) fn count(&self, steps: usize) {
-        self.steps.fetch_add(steps as u64, Ordering::Relaxed);
-    }
-
-    pub(crate) fn go_on(&self) -> Result<(), EngineError> {
-        if self.stop.load(Ordering::Relaxed) { Err(EngineError::Stopped) } else { Ok(()) }
     }
 }

@@ -52,6 +52,7 @@ impl Engine for Note<'_> {
                 let before = trace.step(walk.at);
                 walk.arrive(trace);
                 job.count(trace.step(walk.at) - before);
+                job.count_tests(obstacle_points.len() as u64);
             }
             records.push(walk.record(trace));
         }

@@ -36,6 +36,7 @@ impl Engine for Reference<'_> {
                 let before = trace.step(walk.at);
                 walk.next(model, trace, all.clone());
                 job.count(trace.step(walk.at) - before);
+                job.count_tests(all.len() as u64);
             }
             records.push(walk.record(trace));
         }
