@@ -1,47 +1,55 @@
 // The candidate pass: which vertices can the rope's last leg meet while it sweeps a triangle?
 //
-// One lane takes one query and tries every vertex of one chunk. The vertices lie in a uniform buffer and every lane
-// reads the same one at the same time. The test is conservative: it may name a vertex too many, never one too few (the
-// margin is in the query; `src/candidates/query.rs` derives it). The CPU decides exactly.
+// One lane takes one query and tries the vertices of its pivot's list. Lists lie in pages, each a uniform buffer; queries
+// come sorted by list, so that neighbouring lanes read the same vertices at the same time. The test is conservative: it may
+// name a vertex too many, never one too few (the margin is in the query; `src/candidates/query.rs` derives it). The CPU
+// decides exactly.
 //
-// The twin on the CPU is `src/candidates/cpu.rs`.
+// The twin on the CPU is `src/candidates/list.rs`.
 
-// A swept triangle, as three half-planes in the frame's unit: p is inside where dot(normal, p) + offset >= 0.
-// x, y: the unit normal, pointing inwards; z: the offset; w: unused.
+// How many vertices a page holds, two to a vec4.
+const PAGE: u32 = 8190u;
+
+// A swept triangle, as three half-planes in the frame's unit (xy: the unit normal, pointing inwards; z: the offset): p is
+// inside where dot(normal, p) + offset >= 0. And the places, counted over all pages, of the vertices to be tried.
 struct Query {
-    right: vec4<f32>,
-    left: vec4<f32>,
-    far: vec4<f32>,
+    right: vec3<f32>,
+    first: u32,
+    left: vec3<f32>,
+    count: u32,
+    far: vec3<f32>,
+    unused: u32,
 }
 
-// How many vertices are inside, and the numbers of the first 15 of them. A count above 15 is an overflow.
+// How many vertices are inside, and the places of the first 15 of them. A count above 15 is an overflow.
 struct Found {
     count: u32,
-    vertices: array<u32, 15>,
+    places: array<u32, 15>,
 }
 
-// Up to 8190 vertices, two to a vec4.
-struct Chunk {
-    // The number of the first vertex, in the scene.
+struct Page {
+    // The place of its first vertex; even.
     first: u32,
-    // How many vertices there are in this chunk.
-    count: u32,
-    unused: vec2<u32>,
-    pairs: array<vec4<f32>, 4095>,
-}
-
-struct Round {
-    // How many queries there are this time.
-    queries: u32,
     unused_x: u32,
     unused_y: u32,
     unused_z: u32,
+    pairs: array<vec4<f32>, 4095>,
 }
 
-@group(0) @binding(0) var<uniform> round: Round;
-@group(0) @binding(1) var<uniform> chunk: Chunk;
-@group(0) @binding(2) var<storage, read> queries: array<Query>;
-@group(0) @binding(3) var<storage, read_write> found: array<Found>;
+// The queries that this dispatch answers: those whose lists lie in the page.
+struct Span {
+    first: u32,
+    end: u32,
+    unused_x: u32,
+    unused_y: u32,
+}
+
+@group(0) @binding(0) var<uniform> span: Span;
+@group(0) @binding(1) var<storage, read> queries: array<Query>;
+@group(0) @binding(2) var<storage, read_write> found: array<Found>;
+@group(1) @binding(0) var<uniform> page: Page;
+
+override WORKGROUP: u32 = 64u;
 
 fn inside(query: Query, p: vec2<f32>) -> bool {
     let right = query.right.x * p.x + query.right.y * p.y + query.right.z;
@@ -50,34 +58,36 @@ fn inside(query: Query, p: vec2<f32>) -> bool {
     return min(min(right, left), far) >= 0.0;
 }
 
-fn name_vertex(lane: u32, count: u32, vertex: u32) {
+fn name_place(lane: u32, count: u32, place: u32) {
     if count < 15u {
-        found[lane].vertices[count] = vertex;
+        found[lane].places[count] = place;
     }
 }
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP)
 fn sweep(@builtin(global_invocation_id) id: vec3<u32>) {
-    let lane = id.x;
-    if lane >= round.queries {
+    let lane = span.first + id.x;
+    if lane >= span.end {
         return;
     }
     let query = queries[lane];
-    // Chunks come one dispatch after the other; the first starts the list.
+    // A list that began in an earlier page goes on here.
     var count = 0u;
-    if chunk.first > 0u {
+    if query.first < page.first {
         count = found[lane].count;
     }
-    let pairs = (chunk.count + 1u) / 2u;
-    for (var i = 0u; i < pairs; i++) {
-        let pair = chunk.pairs[i];
+    let start = max(query.first, page.first) - page.first;
+    let end = min(query.first + query.count, page.first + PAGE) - page.first;
+    // Lists begin at even places.
+    for (var i = start / 2u; 2u * i < end; i++) {
+        let pair = page.pairs[i];
         if inside(query, pair.xy) {
-            name_vertex(lane, count, chunk.first + 2u * i);
+            name_place(lane, count, page.first + 2u * i);
             count++;
         }
-        // The last pair of an odd chunk holds one vertex only.
-        if inside(query, pair.zw) && 2u * i + 1u < chunk.count {
-            name_vertex(lane, count, chunk.first + 2u * i + 1u);
+        // The last pair of an odd list holds one vertex only.
+        if inside(query, pair.zw) && 2u * i + 1u < end {
+            name_place(lane, count, page.first + 2u * i + 1u);
             count++;
         }
     }

@@ -37,5 +37,6 @@ mod read_error;
 pub mod rope;
 pub mod scene;
 pub mod trace;
+pub mod visibility;
 
 pub use read_error::{Place, ReadError};

@@ -38,6 +38,12 @@ impl Frame {
         (p - o) * self.scale
     }
 
+    /// A length in the frame's unit.
+    #[inline]
+    pub fn scaled(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
     /// All of the model's vertices in the frame, in f32, in their order.
     pub fn vertices(&self, model: &Model) -> Vec<Vec2> {
         model.vertices().iter().map(|&p| self.place(p).as_vec2()).collect()

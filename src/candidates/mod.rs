@@ -3,17 +3,21 @@
 //! A pass is conservative: it may name a vertex too many, never one too few. It works in f32; the exact update then
 //! decides among the few vertices that it names.
 
-mod cpu;
 mod frame;
+mod list;
+mod lists;
 mod query;
+mod simd;
+mod window;
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::scene::Model;
-
-pub use cpu::CpuPass;
 pub use frame::Frame;
-pub use query::{Query, Swept, swept};
+pub use list::List;
+pub use lists::{LISTS_BUDGET, Lists};
+pub use query::Query;
+pub use simd::{BLOCK, Simd};
+pub use window::{Line, Slopes, Window};
 
 /// How many vertices a query can name before it overflows.
 ///
@@ -26,36 +30,13 @@ pub const ROOM: usize = 15;
 pub struct Found {
     /// How many vertices lie inside, named or not.
     pub count: u32,
-    /// The numbers of the first [`ROOM`] of them.
-    pub vertices: [u32; ROOM],
+    /// The places in the list of the first [`ROOM`] of them.
+    pub places: [u32; ROOM],
 }
 
 impl Found {
-    /// The vertices inside, or `None` if there were more than a query has room for.
-    pub fn candidates(&self) -> Option<&[u32]> {
-        self.vertices.get(..self.count as usize)
+    /// The places of the vertices inside, or `None` if there were more than a query has room for.
+    pub fn places(&self) -> Option<&[u32]> {
+        self.places.get(..self.count as usize)
     }
-}
-
-/// Something that runs queries over all vertices of one scene.
-pub trait CandidatePass {
-    /// What can go wrong.
-    type Error;
-
-    /// The model whose vertices it tries.
-    fn model(&self) -> &Model;
-
-    /// The frame in which its queries are.
-    fn frame(&self) -> &Frame;
-
-    /// How many queries one run can take.
-    fn capacity(&self) -> usize;
-
-    /// Runs all `queries`, at most [`capacity`](Self::capacity) of them, and writes what each found into `found`, which
-    /// is as long.
-    ///
-    /// # Errors
-    ///
-    /// Whatever can go wrong with the pass's device.
-    fn run(&mut self, queries: &[Query], found: &mut [Found]) -> Result<(), Self::Error>;
 }

@@ -23,128 +23,95 @@ use super::Frame;
 /// which is 7.6e-7 in all. Fusing and reassociating change which sums round, not how many.
 const MARGIN: f64 = 1.0 / (1 << 19) as f64;
 
-/// The longest way from the pivot, in the frame's unit, for which a single leg gets a triangle: 2^20. The far side's
-/// offset, and even the way in which the triangle turns, are rounded in proportion to the ways.
+/// The longest way from the pivot, in the frame's unit, for which a leg that spreads wide gets a triangle: 2^20. The far
+/// side's offset, and even the way in which the triangle turns, are rounded in proportion to the ways.
 const LONGEST: f64 = (1 << 20) as f64;
 
 /// The largest offset: beyond it a half-plane holds every vertex (|dot(normal, p)| <= sqrt(2)), or none.
 const FAR: f64 = 2.0;
 
-/// A swept triangle; the shader's `Query`. Each half-plane is its inward unit normal, its offset, and an unused number,
-/// in the frame's unit: `p` is inside where dot(normal, p) + offset >= 0 in all three.
+/// A swept triangle; the shader's `Query`. Each half-plane is its inward unit normal and its offset, in the frame's unit:
+/// `p` is inside where dot(normal, p) + offset >= 0 in all three.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Query {
     /// The half-plane left of the triangle's right side.
-    pub right: [f32; 4],
+    pub right: [f32; 3],
+    /// Where the vertices to be tried begin, in whatever holds them on the device.
+    pub first: u32,
     /// The half-plane right of its left side.
-    pub left: [f32; 4],
+    pub left: [f32; 3],
+    /// How many vertices are to be tried.
+    pub count: u32,
     /// The half-plane on the pivot's side of its far side.
-    pub far: [f32; 4],
+    pub far: [f32; 3],
+    /// Fills 16 bytes.
+    pub unused: u32,
 }
 
-/// A query and how much of the trace it covers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Swept {
-    /// The triangle.
-    pub query: Query,
-    /// How many legs lie inside it, at least 1.
-    pub legs: usize,
-}
-
-/// The triangle with its apex at `pivot` that covers as many as possible of the legs between neighbours in `points`.
-///
-/// `points` are at least two; their first is where the free end stands. A window of several legs ends before the
-/// directions from the pivot spread to a right angle; a single leg may spread to anything below a half turn. A single leg
-/// that spreads and starts or ends absurdly far away is covered by the whole plane.
-/// O(legs covered).
-///
-/// Convexity makes a window outlive its events: after a wrap the pivot lies inside the triangle, so everything that the
-/// remaining legs can sweep about it does too.
-pub fn swept(frame: &Frame, pivot: DVec2, points: &[DVec2]) -> Swept {
-    let mut cone = Cone::default();
-    cone.widen(frame.way(pivot, points[0]));
-    let mut legs = 0;
-    while legs + 1 < points.len() && cone.widen(frame.way(pivot, points[legs + 1])) {
-        legs += 1;
-    }
-    let origin = frame.place(pivot);
-    if legs > 0 {
-        let far = points[..=legs].iter().map(|&p| frame.way(pivot, p));
-        return Swept { query: cone.query(origin, far), legs };
-    }
-    Swept { query: triangle(origin, frame.way(pivot, points[0]), frame.way(pivot, points[1])), legs: 1 }
-}
-
-/// The directions from the pivot to the points of a window: all lie between `right` and `left`, less than a right angle
-/// apart. Zero while no point off the pivot was seen.
-#[derive(Default)]
-struct Cone {
-    right: DVec2,
-    left: DVec2,
-}
-
-impl Cone {
-    /// Takes the direction of `way` in, if that keeps the cone below a right angle.
-    #[inline]
-    fn widen(&mut self, way: DVec2) -> bool {
-        if way == DVec2::ZERO {
-            return true;
-        }
-        let way = tamed(way);
-        if self.right == DVec2::ZERO {
-            (self.right, self.left) = (way, way);
-            return true;
-        }
-        if self.right.dot(way) <= 0.0 || self.left.dot(way) <= 0.0 {
-            return false;
-        }
-        if self.right.perp_dot(way) < 0.0 {
-            self.right = way;
-        } else if self.left.perp_dot(way) > 0.0 {
-            self.left = way;
-        }
-        true
-    }
-
-    /// The cone about `origin`, cut off beyond the furthest of `ways`.
-    fn query(&self, origin: DVec2, ways: impl Iterator<Item = DVec2>) -> Query {
-        if self.right == DVec2::ZERO {
-            // The free end stays on the pivot: nothing is swept.
-            let nowhere = [0.0, 0.0, -1.0, 0.0];
-            return Query { right: nowhere, left: nowhere, far: nowhere };
-        }
-        let (right, left) = (unit(self.right), unit(self.left));
+impl Query {
+    /// The triangle with its apex at `pivot` between the directions `right` and `left`, which are less than a half turn
+    /// apart, cut off behind all that is no further than `reach` from the pivot.
+    pub fn wedge(frame: &Frame, pivot: DVec2, right: DVec2, left: DVec2, reach: f64) -> Query {
+        let origin = frame.place(pivot);
+        let (right, left) = (unit(right), unit(left));
         let ahead = unit(right + left);
-        let reach = ways.fold(0.0, |reach: f64, way| reach.max(ahead.dot(way)));
         Query {
             right: half_plane(right.perp(), origin, 0.0),
             left: half_plane(-left.perp(), origin, 0.0),
-            far: half_plane(-ahead, origin, reach),
+            far: half_plane(-ahead, origin, frame.scaled(reach)),
+            ..Query::default()
         }
     }
-}
 
-/// The triangle of `origin` and the points at `a` and `b` from it, whose directions are a right angle or more apart.
-fn triangle(origin: DVec2, a: DVec2, b: DVec2) -> Query {
-    if a.abs().max(b.abs()).max_element() > LONGEST {
-        let everywhere = [0.0, 0.0, 1.0, 0.0];
-        return Query { right: everywhere, left: everywhere, far: everywhere };
+    /// The triangle of `pivot` and the leg from `a` to `b`. A leg that spreads a right angle or more and starts or ends
+    /// absurdly far away is covered by the whole plane.
+    pub fn leg(frame: &Frame, pivot: DVec2, a: DVec2, b: DVec2) -> Query {
+        let (a, b) = (frame.way(pivot, a), frame.way(pivot, b));
+        let reach = a.abs().max(b.abs()).max_element();
+        let (ta, tb) = (tamed(a), tamed(b));
+        // A free end on the pivot has no direction: the other end's is all that is swept.
+        let (ta, tb) = if a == DVec2::ZERO {
+            (tb, tb)
+        } else if b == DVec2::ZERO {
+            (ta, ta)
+        } else {
+            (ta, tb)
+        };
+        if reach == 0.0 {
+            return Query::everywhere(-1.0);
+        }
+        let ((right, left), (r, l)) = if ta.perp_dot(tb) >= 0.0 { ((ta, tb), (a, b)) } else { ((tb, ta), (b, a)) };
+        let (right, left) = (unit(right), unit(left));
+        let origin = frame.place(pivot);
+        let far = if right.dot(left) > 0.0 {
+            let ahead = unit(right + left);
+            half_plane(-ahead, origin, ahead.dot(l).max(ahead.dot(r)))
+        } else if reach > LONGEST {
+            return Query::everywhere(1.0);
+        } else {
+            let normal = unit(tamed(l - r)).perp();
+            half_plane(normal, origin, -normal.dot(l).min(normal.dot(r)))
+        };
+        Query {
+            right: half_plane(right.perp(), origin, 0.0),
+            left: half_plane(-left.perp(), origin, 0.0),
+            far,
+            ..Query::default()
+        }
     }
-    let (ta, tb) = (tamed(a), tamed(b));
-    let ((right, left), (r, l)) = if ta.perp_dot(tb) >= 0.0 { ((ta, tb), (a, b)) } else { ((tb, ta), (b, a)) };
-    let far = unit(tamed(l - r)).perp();
-    Query {
-        right: half_plane(unit(right).perp(), origin, 0.0),
-        left: half_plane(-unit(left).perp(), origin, 0.0),
-        far: half_plane(far, origin, -far.dot(l).min(far.dot(r))),
+
+    /// The whole plane for a positive offset, nothing for a negative one.
+    fn everywhere(offset: f32) -> Query {
+        let plane = [0.0, 0.0, offset];
+        Query { right: plane, left: plane, far: plane, ..Query::default() }
     }
 }
 
 /// The half-plane dot(normal, p - origin) + offset >= 0, grown by the margin.
-fn half_plane(normal: DVec2, origin: DVec2, offset: f64) -> [f32; 4] {
+fn half_plane(normal: DVec2, origin: DVec2, offset: f64) -> [f32; 3] {
     let offset = (offset - normal.dot(origin) + MARGIN).clamp(-FAR, FAR);
-    [normal.x as f32, normal.y as f32, offset as f32, 0.0]
+    [normal.x as f32, normal.y as f32, offset as f32]
 }
 
 /// The same direction, with a length whose square neither over- nor underflows.
@@ -162,6 +129,7 @@ fn tamed(way: DVec2) -> DVec2 {
     }
 }
 
+#[inline]
 fn unit(way: DVec2) -> DVec2 {
-    way / way.length()
+    way * (1.0 / way.length())
 }

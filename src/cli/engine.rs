@@ -19,6 +19,9 @@ pub(crate) struct EngineArgs {
     /// The most steps that one query covers; no result depends on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     window: Option<u32>,
+    /// Try all wall ends in every query, not only those that the pivot sees; no result depends on it
+    #[arg(long)]
+    keep_all: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -64,7 +67,10 @@ impl EngineArgs {
     }
 
     fn gpu<'m>(&self, choice: &AdapterChoice, model: &'m Model) -> Result<Opened<'m>, GpuError> {
-        let engine = Gpu::new(Device::open(choice)?, model)?.window(self.window());
+        let mut engine = Gpu::new(Device::open(choice)?, model)?.window(self.window());
+        if self.keep_all {
+            engine = engine.keep_all();
+        }
         let on = engine.adapter().to_string();
         eprintln!("engine: gpu on {on}");
         Ok((Box::new(engine), on))
@@ -72,7 +78,11 @@ impl EngineArgs {
 
     fn cpu<'m>(&self, model: &'m Model) -> Opened<'m> {
         let on = format!("{} threads", rayon::current_num_threads());
-        (Box::new(Cpu::new(model).window(self.window())), on)
+        let mut engine = Cpu::new(model).window(self.window());
+        if self.keep_all {
+            engine = engine.keep_all();
+        }
+        (Box::new(engine), on)
     }
 
     fn window(&self) -> usize {

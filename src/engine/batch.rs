@@ -1,148 +1,229 @@
-//! Many traces at once: each round, every active trace asks one query, a candidate pass answers them all, and the exact
-//! update goes on among the candidates. Finished traces leave and waiting ones take their place.
+//! Many traces at once on a device: each round, every active trace asks one query, the device answers them all, and the
+//! exact update goes on among the candidates. Finished traces leave and waiting ones take their place. Two half-batches
+//! take turns, so that one is on the device while the other is on the CPU.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::walk::Walk;
-use super::{EngineError, Job};
-use crate::candidates::{CandidatePass, Found, Frame, Query, ROOM, swept};
-use crate::rope::{EventKind, TraceRecord};
-use crate::scene::Model;
+use super::course::Course;
+use super::{EngineError, Job, Phase};
+use crate::candidates::{Found, List, Lists, Query, ROOM, Simd, Slopes};
+use crate::gpu::{GpuPass, HALVES};
+use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
 
-/// How many legs the first window of a trace covers at most.
-const FIRST_WINDOW: usize = 8;
+/// What all slots share.
+struct Shared<'a, 'm> {
+    lists: &'a Lists<'m>,
+    window: usize,
+    simd: Simd,
+    traces: &'a [SettledTrace],
+    /// How many traces have been begun.
+    begun: AtomicUsize,
+    /// Whether the device named a vertex that it was not given.
+    astray: AtomicBool,
+    job: &'a Job,
+}
 
 /// Evaluates `traces` in rounds of `pass`, with windows of at most `window` legs.
-pub(super) fn evaluate<P>(
-    pass: &mut P,
+pub(super) fn evaluate(
+    pass: &mut GpuPass,
+    lists: &Lists<'_>,
     window: usize,
     traces: &[SettledTrace],
     job: &Job,
-) -> Result<Vec<TraceRecord>, EngineError>
-where
-    P: CandidatePass,
-    EngineError: From<P::Error>,
-{
+) -> Result<Vec<TraceRecord>, EngineError> {
+    let (begun, astray) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let shared = Shared { lists, window, simd: Simd::detected(), traces, begun, astray, job };
+    let slots = pass.capacity().min(traces.len().div_ceil(HALVES));
+    let mut halves: [Half<'_>; HALVES] = std::array::from_fn(|_| Half::new(slots));
     let mut records: Vec<Option<TraceRecord>> = traces.iter().map(|_| None).collect();
-    let mut waiting = traces.iter().enumerate();
-    let (capacity, frame) = (pass.capacity(), *pass.frame());
-    let mut slots: Vec<Slot<'_>> = waiting.by_ref().take(capacity).map(|t| Slot::new(pass.model(), t)).collect();
-    let mut queries = vec![Query::default(); slots.len()];
-    let mut found = vec![Found::default(); slots.len()];
-    loop {
-        job.go_on()?;
-        // From the back, so that a slot moved into a gap has been looked at.
-        for i in (0..slots.len()).rev() {
-            while let Some(record) = slots[i].finished() {
-                records[slots[i].number] = Some(record);
-                match waiting.next() {
-                    Some(next) => slots[i].take(pass.model(), next),
-                    None => {
-                        slots.swap_remove(i);
-                        break;
-                    }
-                }
+    let done = play(pass, &shared, &mut halves, &mut records);
+    // Rounds that are still on their way after an early end: so that the next evaluation finds the device free.
+    for (half, Half { found, queries, .. }) in halves.iter_mut().enumerate() {
+        let _ = pass.collect(half, &mut found[..queries.len()]);
+    }
+    done?;
+    Ok(records.into_iter().map(|r| r.expect("every trace was evaluated")).collect())
+}
+
+fn play<'a>(
+    pass: &mut GpuPass,
+    shared: &Shared<'a, '_>,
+    halves: &mut [Half<'a>],
+    records: &mut [Option<TraceRecord>],
+) -> Result<(), EngineError> {
+    while halves.iter().any(|half| !half.slots.is_empty()) {
+        for (number, half) in halves.iter_mut().enumerate() {
+            shared.job.go_on()?;
+            half.collect(pass, number, shared.job)?;
+            half.advance(shared, records);
+            if shared.astray.load(Ordering::Relaxed) {
+                return Err(pass.device().failed("it named a vertex that it was not given").into());
+            }
+            half.send(pass, number, shared);
+            if shared.job.is_timed() {
+                // Alone on the machine, so that each phase's time is its own.
+                shared.job.time(Phase::Kernel, || pass.wait(number))?;
             }
         }
-        if slots.is_empty() {
-            break;
-        }
-        let (queries, found) = (&mut queries[..slots.len()], &mut found[..slots.len()]);
-        let ask = |(slot, query): (&mut Slot<'_>, &mut Query)| *query = slot.ask(&frame, window);
-        slots.par_iter_mut().zip(queries.par_iter_mut()).with_min_len(64).for_each(ask);
-        pass.run(queries, found)?;
-        job.count_tests((queries.len() * pass.model().vertices().len()) as u64);
-        let model = pass.model();
-        let advance = |(slot, found): (&mut Slot<'_>, &Found)| slot.advance(model, found);
-        job.count(slots.par_iter_mut().zip(found.par_iter()).with_min_len(64).map(advance).sum());
     }
-    Ok(records.into_iter().map(|r| r.expect("every trace was evaluated")).collect())
+    Ok(())
+}
+
+/// A half-batch and its round.
+struct Half<'a> {
+    slots: Vec<Slot<'a>>,
+    /// The places of the slots' lists and the slots' numbers, in one number, so that sorting puts equal lists together.
+    order: Vec<u64>,
+    queries: Vec<Query>,
+    found: Vec<Found>,
+}
+
+impl<'a> Half<'a> {
+    fn new(slots: usize) -> Self {
+        Half {
+            slots: (0..slots).map(|_| Slot::new()).collect(),
+            order: Vec::with_capacity(slots),
+            queries: Vec::with_capacity(slots),
+            found: vec![Found::default(); slots],
+        }
+    }
+
+    fn collect(&mut self, pass: &mut GpuPass, number: usize, job: &Job) -> Result<(), EngineError> {
+        let found = &mut self.found[..self.queries.len()];
+        Ok(job.time(Phase::Readback, || pass.collect(number, found))?)
+    }
+
+    /// Takes every slot as far as the answers allow, and on to its next query. Slots without a trace leave.
+    fn advance(&mut self, shared: &Shared<'a, '_>, records: &mut [Option<TraceRecord>]) {
+        let found = &self.found;
+        self.slots.par_iter_mut().with_min_len(64).for_each_init(Slopes::default, |slopes, slot| {
+            shared.job.time(Phase::Update, || slot.answered(shared, found, slopes));
+            shared.job.time(Phase::Queries, || slot.ask(shared, slopes));
+        });
+        for slot in &mut self.slots {
+            slot.records.drain(..).for_each(|(number, record)| records[number] = Some(record));
+        }
+        self.slots.retain(|slot| slot.asked.is_some());
+    }
+
+    /// Sends the slots' queries, sorted by list. Those whose lists find no room wait for the next round.
+    fn send(&mut self, pass: &mut GpuPass, number: usize, shared: &Shared<'a, '_>) {
+        shared.job.time(Phase::Upload, || {
+            pass.start_round();
+            self.order.clear();
+            for (number, slot) in (0..).zip(&mut self.slots) {
+                if let Some(asked) = &mut slot.asked
+                    && let Some(place) = pass.place(asked.pivot, &asked.list)
+                {
+                    self.order.push(u64::from(place) << 32 | number);
+                }
+            }
+            self.order.sort_unstable();
+            self.queries.clear();
+            let mut tests = 0;
+            for (answer, &ordered) in (0..).zip(&self.order) {
+                let Some(asked) = &mut self.slots[ordered as u32 as usize].asked else { continue };
+                let (first, count) = ((ordered >> 32) as u32, asked.list.numbers().len() as u32);
+                self.queries.push(Query { first, count, ..asked.query });
+                asked.answer = Some((first, answer));
+                tests += u64::from(count);
+            }
+            pass.send(number, &self.queries);
+            shared.job.count_tests(tests);
+        });
+    }
 }
 
 /// A place in the batch and the trace in it.
 struct Slot<'a> {
-    trace: &'a SettledTrace,
-    /// The trace's place in the batch.
-    number: usize,
-    walk: Walk,
-    /// How many legs the next query should cover.
-    window: usize,
-    /// The point to which the last query reaches.
-    end: usize,
-    /// The number of contacts when it was asked.
-    depth: usize,
+    course: Course,
+    trace: Option<(usize, &'a SettledTrace)>,
+    asked: Option<Asked>,
+    /// The records of traces that were finished since they were last fetched, with the traces' numbers.
+    records: Vec<(usize, TraceRecord)>,
+}
+
+/// What a slot waits for.
+struct Asked {
+    pivot: u32,
+    list: Arc<List>,
+    query: Query,
+    /// Where its list lies and which answer is its own, once it has been sent.
+    answer: Option<(u32, usize)>,
 }
 
 impl<'a> Slot<'a> {
-    fn new(model: &Model, (number, trace): (usize, &'a SettledTrace)) -> Self {
-        let mut slot = Slot { trace, number, walk: Walk::new(), window: 0, end: 0, depth: 0 };
-        slot.take(model, (number, trace));
-        slot
+    fn new() -> Self {
+        Slot { course: Course::new(), trace: None, asked: None, records: Vec::new() }
     }
 
-    fn take(&mut self, model: &Model, (number, trace): (usize, &'a SettledTrace)) {
-        (self.trace, self.number, self.window) = (trace, number, FIRST_WINDOW);
-        self.walk.start(model, trace);
-    }
-
-    /// The record of a trace that is done.
-    fn finished(&mut self) -> Option<TraceRecord> {
-        self.walk.is_done(self.trace).then(|| self.walk.record(self.trace))
-    }
-
-    /// The query for what comes next; the trace is not done.
-    fn ask(&mut self, frame: &Frame, window: usize) -> Query {
-        let at = self.walk.at;
-        let legs = self.window.min(window).min(self.trace.points().len() - 1 - at);
-        self.depth = self.walk.rope.contacts().len();
-        let swept = swept(frame, self.walk.rope.pivot(), &self.trace.points()[at..=at + legs]);
-        self.end = at + swept.legs;
-        swept.query
-    }
-
-    /// Goes on exactly as far as the candidates suffice, and returns by how many steps of the trace.
-    fn advance(&mut self, model: &Model, found: &Found) -> usize {
-        let start = self.walk.at;
-        match found.candidates() {
-            // Where a trace crosses walls, the rope's last leg is not free, and it can meet what lies outside the swept
-            // triangle.
-            _ if self.trace.violation().is_some() => self.try_all(model),
-            Some(candidates) => {
-                self.follow(model, candidates);
-                self.adapt(candidates.len(), self.end - start);
+    /// Goes on as far as the answer suffices.
+    fn answered(&mut self, shared: &Shared<'a, '_>, found: &[Found], slopes: &mut Slopes) {
+        let (Some((_, trace)), Some(asked)) = (self.trace, &self.asked) else { return };
+        let Some((first, answer)) = asked.answer else { return };
+        let (model, simd) = (shared.lists.model(), shared.simd);
+        let before = trace.step(self.course.at());
+        let mut candidates = [0; ROOM];
+        match found[answer].places() {
+            Some([]) if self.course.is_quiet() => self.course.pass_by(trace),
+            Some(places) => {
+                let candidates = &mut candidates[..places.len()];
+                for (candidate, place) in candidates.iter_mut().zip(places) {
+                    match asked.list.numbers().get(place.wrapping_sub(first) as usize) {
+                        Some(&vertex) => *candidate = vertex,
+                        None => return shared.astray.store(true, Ordering::Relaxed),
+                    }
+                }
+                self.course.recall(trace, simd, slopes);
+                self.course.go_on(model, trace, candidates, simd, slopes);
             }
-            None if self.end - start > 1 => self.window = 1.max((self.end - start) / 4),
+            None if self.course.narrow() => {}
             // Too many for one leg.
-            None => self.try_all(model),
+            None => {
+                let mut candidates = Vec::new();
+                asked.list.sweep(simd, &asked.query, &mut candidates);
+                self.course.recall(trace, simd, slopes);
+                self.course.go_on(model, trace, &candidates, simd, slopes);
+            }
         }
-        self.trace.step(self.walk.at) - self.trace.step(start)
+        shared.job.count(trace.step(self.course.at()) - before);
+        self.asked = None;
     }
 
-    /// Plays the window's legs with all vertices, as the reference does.
-    fn try_all(&mut self, model: &Model) {
-        while self.walk.at < self.end {
-            self.walk.next(model, self.trace, 0..model.vertices().len() as u32);
+    /// Asks what comes next, in the next trace where one is done; nothing if no trace is left.
+    fn ask(&mut self, shared: &Shared<'a, '_>, slopes: &mut Slopes) {
+        // A query that found no room in the last round is sent again.
+        if self.asked.is_some() {
+            return;
         }
-    }
-
-    /// Plays the window's legs. After wraps the pivot stays inside the swept triangle, which is convex and so holds all
-    /// that the remaining legs can meet; an unwrap from the pivot that asked leads out of it.
-    fn follow(&mut self, model: &Model, candidates: &[u32]) {
-        while self.walk.at < self.end {
-            let event = self.walk.next(model, self.trace, candidates.iter().copied());
-            if event == Some(EventKind::Unwrap) && self.walk.rope.contacts().len() < self.depth {
+        let (lists, model) = (shared.lists, shared.lists.model());
+        loop {
+            let Some((number, trace)) = self.trace else {
+                let number = shared.begun.fetch_add(1, Ordering::Relaxed);
+                let Some(trace) = shared.traces.get(number) else { return };
+                self.trace = Some((number, trace));
+                self.course.start(model, trace);
+                continue;
+            };
+            if let Some(record) = self.course.finished(trace) {
+                self.records.push((number, record));
+                self.trace = None;
+                continue;
+            }
+            let query = self.course.ask(lists.frame(), trace, shared.window, shared.simd, slopes);
+            if trace.violation().is_none() {
+                let pivot = self.course.pivot(model);
+                self.asked = Some(Asked { pivot: lists.key(pivot), list: lists.of(pivot), query, answer: None });
                 return;
             }
-        }
-    }
-
-    /// Widens the windows while little is found, narrows them when much is.
-    fn adapt(&mut self, found: usize, legs: usize) {
-        if found > ROOM / 2 {
-            self.window = 1.max(legs / 2);
-        } else if found <= ROOM / 4 && legs == self.window {
-            self.window *= 2;
+            // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
+            let before = trace.step(self.course.at());
+            self.course.try_all(model, trace);
+            shared.job.count(trace.step(self.course.at()) - before);
         }
     }
 }

@@ -1,29 +1,33 @@
-//! The batch pipeline for machines without a GPU: the candidate pass on threads.
+//! The window pipeline for machines without a GPU: one trace after the other on each thread.
 
-use super::{Engine, EngineError, Job, WINDOW, batch};
-use crate::candidates::CpuPass;
+use rayon::prelude::*;
+
+use super::course::Course;
+use super::{Engine, EngineError, Job, Phase, WINDOW};
+use crate::candidates::{Lists, ROOM, Simd, Slopes};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
-/// How many traces share a round: enough to keep all cores busy between the round's barriers.
-const SLOTS: usize = 4096;
+/// After how many steps of a trace the job is told of them, so that the threads do not fight for its counter.
+const TELL: usize = 1 << 12;
 
 /// Evaluates traces on all cores, for one model.
 pub struct Cpu<'m> {
-    pass: CpuPass<'m>,
+    lists: Lists<'m>,
     window: usize,
+    simd: Simd,
 }
 
 impl<'m> Cpu<'m> {
     /// An engine for `model`.
     pub fn new(model: &'m Model) -> Self {
-        Self::with_slots(model, SLOTS)
+        Self::with_lists(Lists::new(model))
     }
 
-    /// An engine that evaluates at most `slots` traces at a time, at least 1.
-    pub fn with_slots(model: &'m Model, slots: usize) -> Self {
-        Cpu { pass: CpuPass::new(model, slots), window: WINDOW }
+    /// An engine that tries the vertices of `lists`.
+    pub fn with_lists(lists: Lists<'m>) -> Self {
+        Cpu { lists, window: WINDOW, simd: Simd::detected() }
     }
 
     /// The same engine with windows of at most `legs` legs, at least 1.
@@ -31,6 +35,25 @@ impl<'m> Cpu<'m> {
     pub fn window(mut self, legs: usize) -> Self {
         self.window = legs.max(1);
         self
+    }
+
+    /// The same engine with another instruction set.
+    #[must_use]
+    pub fn simd(mut self, simd: Simd) -> Self {
+        self.simd = simd;
+        self
+    }
+
+    /// The same engine, trying all vertices in every query, not only those that the pivot sees.
+    #[must_use]
+    pub fn keep_all(mut self) -> Self {
+        self.lists = self.lists.keep_all();
+        self
+    }
+
+    /// The lists that it has made so far.
+    pub fn lists(&self) -> &Lists<'m> {
+        &self.lists
     }
 }
 
@@ -40,6 +63,60 @@ impl Engine for Cpu<'_> {
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        batch::evaluate(&mut self.pass, self.window, traces, job)
+        let this = &*self;
+        let lane = || Lane { engine: this, course: Course::new(), slopes: Slopes::default(), found: Vec::new() };
+        traces.par_iter().map_init(lane, |lane, trace| lane.evaluate(trace, job)).collect()
+    }
+}
+
+/// What evaluates one trace after the other.
+struct Lane<'e, 'm> {
+    engine: &'e Cpu<'m>,
+    course: Course,
+    slopes: Slopes,
+    /// The candidates of the current window.
+    found: Vec<u32>,
+}
+
+impl Lane<'_, '_> {
+    fn evaluate(&mut self, trace: &SettledTrace, job: &Job) -> Result<TraceRecord, EngineError> {
+        let Cpu { lists, window, simd } = self.engine;
+        let model = lists.model();
+        self.course.start(model, trace);
+        let mut pivot = self.course.pivot(model);
+        let mut list = lists.of(pivot);
+        let (mut told, mut tests) = (0, 0);
+        loop {
+            if let Some(record) = self.course.finished(trace) {
+                job.count(trace.step(self.course.at()) - told);
+                job.count_tests(tests);
+                return Ok(record);
+            }
+            job.go_on()?;
+            let step = trace.step(self.course.at());
+            if step - told >= TELL {
+                job.count(step - told);
+                told = step;
+            }
+            let query = job.time(Phase::Queries, || {
+                let now = self.course.pivot(model);
+                if now != pivot {
+                    (pivot, list) = (now, lists.of(now));
+                }
+                self.course.ask(lists.frame(), trace, *window, *simd, &mut self.slopes)
+            });
+            if trace.violation().is_some() {
+                // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
+                self.course.try_all(model, trace);
+                continue;
+            }
+            self.found.clear();
+            job.time(Phase::Kernel, || list.sweep(*simd, &query, &mut self.found));
+            tests += list.numbers().len() as u64;
+            if self.found.len() > ROOM && self.course.narrow() {
+                continue;
+            }
+            job.time(Phase::Update, || self.course.go_on(model, trace, &self.found, *simd, &self.slopes));
+        }
     }
 }

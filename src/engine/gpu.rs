@@ -1,18 +1,16 @@
 //! The engine of the product: the candidate pass in a compute shader, pushes and pops on the CPU.
 
 use super::{Engine, EngineError, Job, WINDOW, batch};
-use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass};
+use crate::candidates::{LISTS_BUDGET, Lists};
+use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass, SWEEP_WGSL, Tuning};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
-/// How many traces share a round unless told otherwise. Enough lanes to hide a dispatch's fixed cost of 60 to 250 us,
-/// few enough that queries and readback (112 bytes a trace) stay in the cache.
-const SLOTS: usize = 8192;
-
 /// Evaluates traces on a GPU, for one model.
 pub struct Gpu<'m> {
-    pass: GpuPass<'m>,
+    lists: Lists<'m>,
+    pass: GpuPass,
     window: usize,
 }
 
@@ -23,12 +21,20 @@ impl<'m> Gpu<'m> {
     ///
     /// What the device complains of.
     pub fn new(device: Device, model: &'m Model) -> Result<Self, GpuError> {
-        Ok(Self::with_pass(GpuPass::new(device, model, SLOTS)?))
+        let tuning = device.tuning();
+        Self::with(device, Lists::new(model), LISTS_BUDGET, tuning, SWEEP_WGSL)
     }
 
-    /// An engine on a pass of one's own making, with another number of slots, say.
-    pub fn with_pass(pass: GpuPass<'m>) -> Self {
-        Gpu { pass, window: WINDOW }
+    /// An engine that tries the vertices of `lists`, keeps up to `budget` bytes of them on the device, and takes `tuning`
+    /// instead of what suits the adapter and `wgsl` instead of `sweep.wgsl`.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of, be it the shader or the memory.
+    pub fn with(device: Device, lists: Lists<'m>, budget: usize, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
+        let n = lists.model().vertices().len();
+        let pass = GpuPass::with_shader(device, n + 1, n, budget, tuning, wgsl)?;
+        Ok(Gpu { lists, pass, window: WINDOW })
     }
 
     /// The same engine with windows of at most `legs` legs, at least 1.
@@ -42,6 +48,18 @@ impl<'m> Gpu<'m> {
     pub fn adapter(&self) -> &AdapterSummary {
         self.pass.device().summary()
     }
+
+    /// The same engine, trying all vertices in every query, not only those that the pivot sees.
+    #[must_use]
+    pub fn keep_all(mut self) -> Self {
+        self.lists = self.lists.keep_all();
+        self
+    }
+
+    /// The lists that it has made so far.
+    pub fn lists(&self) -> &Lists<'m> {
+        &self.lists
+    }
 }
 
 impl Engine for Gpu<'_> {
@@ -50,6 +68,6 @@ impl Engine for Gpu<'_> {
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        batch::evaluate(&mut self.pass, self.window, traces, job)
+        batch::evaluate(&mut self.pass, &self.lists, self.window, traces, job)
     }
 }

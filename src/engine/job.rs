@@ -87,6 +87,10 @@ impl Job {
         self.tests.fetch_add(tests, Ordering::Relaxed);
     }
 
+    pub(crate) fn is_timed(&self) -> bool {
+        self.timed
+    }
+
     pub(crate) fn go_on(&self) -> Result<(), EngineError> {
         if self.stop.load(Ordering::Relaxed) { Err(EngineError::Stopped) } else { Ok(()) }
     }

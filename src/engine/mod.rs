@@ -2,6 +2,7 @@
 //! vertices to try (but for `note` and `funnel`, which are other methods altogether).
 
 mod batch;
+mod course;
 mod cpu;
 mod funnel;
 mod gpu;

@@ -18,6 +18,8 @@ pub(super) struct Walk {
     events: Vec<Event>,
     /// The wraps that the current leg can still have, and one more.
     wraps_left: usize,
+    /// What a leg starts with.
+    wraps_of_a_leg: usize,
 }
 
 impl Walk {
@@ -30,6 +32,7 @@ impl Walk {
             max_depth: 0,
             events: Vec::new(),
             wraps_left: 0,
+            wraps_of_a_leg: 0,
         }
     }
 
@@ -41,7 +44,8 @@ impl Walk {
         self.max_length = 0.0;
         self.max_depth = 0;
         self.events.clear();
-        self.wraps_left = model.vertices().len() + 1;
+        self.wraps_of_a_leg = model.vertices().len() + 1;
+        self.wraps_left = self.wraps_of_a_leg;
         self.look(trace);
     }
 
@@ -76,7 +80,7 @@ impl Walk {
                 Some(kind)
             }
             None => {
-                self.wraps_left = model.vertices().len() + 1;
+                self.wraps_left = self.wraps_of_a_leg;
                 self.arrive(trace);
                 None
             }
@@ -95,11 +99,39 @@ impl Walk {
         self.look(trace);
     }
 
+    /// Goes on to point `to`, on the way to which nothing happens and the free end never stands on the line of the
+    /// unwrapping ray. `farthest` is the square of the greatest distance from the pivot on the way.
+    pub(super) fn skip(&mut self, trace: &SettledTrace, to: usize, farthest: impl FnOnce() -> f64) {
+        self.wraps_left = self.wraps_of_a_leg;
+        if !trace.is_plain() {
+            while self.at < to {
+                self.arrive(trace);
+            }
+            return;
+        }
+        self.at = to;
+        self.sweep = Sweep::Start;
+        let (length, depth) = self.rope.base();
+        // Rounded sums and square roots keep the order, so the furthest point has the longest rope.
+        self.max_length = self.max_length.max(length + farthest().sqrt());
+        self.max_depth = self.max_depth.max(depth);
+    }
+
+    /// The direction in which the rope's last leg points where it stands, if that is not at point `at` but on the way
+    /// from there.
+    pub(super) fn start_direction(&self) -> Option<DVec2> {
+        match self.sweep {
+            Sweep::Start => None,
+            Sweep::After { x, y, .. } => Some(y - x),
+        }
+    }
+
     fn look(&mut self, trace: &SettledTrace) {
         if trace.ends_step(self.at) {
             let a = trace.points()[self.at];
-            self.max_length = self.max_length.max(self.rope.length(a));
-            self.max_depth = self.max_depth.max(self.rope.depth(a));
+            let (length, depth) = self.rope.measure(a);
+            self.max_length = self.max_length.max(length);
+            self.max_depth = self.max_depth.max(depth);
         }
     }
 

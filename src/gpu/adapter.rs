@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use wgpu::{Backends, DeviceType};
 
-use super::GpuError;
+use super::{GpuError, Tuning};
 
 /// How to get a software adapter.
 pub const SOFTWARE_HINT: &str = "For a software adapter (Mesa's lavapipe) on Debian or Ubuntu: \
@@ -143,6 +143,7 @@ pub struct Device {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     summary: AdapterSummary,
+    tuning: Tuning,
     /// The first thing that the device or its driver complained of since it was last asked.
     complaint: Arc<Mutex<Option<Complaint>>>,
 }
@@ -161,7 +162,7 @@ impl Device {
         };
         let unfit = |why: String| GpuError::Unfit { adapter: summary.name.clone(), why };
         let limits = adapter.limits();
-        if limits.max_uniform_buffer_binding_size < super::pass::CHUNK_BYTES {
+        if limits.max_uniform_buffer_binding_size < super::pages::PAGE_BYTES {
             return Err(unfit("its uniform buffers hold less than 64 KiB".to_owned()));
         }
         let request = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
@@ -176,12 +177,18 @@ impl Device {
                 hear(&heard, format!("the device was lost: {message}"), true);
             }
         });
-        Ok(Device { device, queue, summary: summary.clone(), complaint })
+        let tuning = Tuning::of(summary.kind, adapter.get_info().subgroup_max_size);
+        Ok(Device { device, queue, summary: summary.clone(), tuning, complaint })
     }
 
     /// The adapter in words.
     pub fn summary(&self) -> &AdapterSummary {
         &self.summary
+    }
+
+    /// What suits the adapter.
+    pub fn tuning(&self) -> Tuning {
+        self.tuning
     }
 
     /// An error if the device has complained since it was last asked, or is lost.
@@ -198,7 +205,7 @@ impl Device {
         GpuError::Unfit { adapter: self.summary.name.clone(), why }
     }
 
-    pub(super) fn failed(&self, why: impl ToString) -> GpuError {
+    pub(crate) fn failed(&self, why: impl ToString) -> GpuError {
         GpuError::Failed { adapter: self.summary.name.clone(), why: why.to_string() }
     }
 }

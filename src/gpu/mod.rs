@@ -1,10 +1,13 @@
 //! The GPU: adapters, and the candidate pass in `shaders/sweep.wgsl`.
 
 mod adapter;
+mod pages;
 mod pass;
+mod tuning;
 
 pub use adapter::{AdapterChoice, AdapterKind, AdapterSummary, Device, SOFTWARE_HINT, adapters};
-pub use pass::{GpuPass, SWEEP_WGSL};
+pub use pass::{GpuPass, HALVES, SWEEP_WGSL};
+pub use tuning::Tuning;
 
 /// What can go wrong with a GPU.
 #[derive(Debug, thiserror::Error)]

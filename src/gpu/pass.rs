@@ -1,25 +1,18 @@
 //! The candidate pass on the GPU: `shaders/sweep.wgsl`, its buffers and its round trip.
 
+use std::ops::Range;
 use std::sync::mpsc;
 use std::time::Duration;
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BufferUsages, PollType};
 
-use super::{Device, GpuError};
-use crate::candidates::{CandidatePass, Found, Frame, Query};
-use crate::scene::Model;
+use super::pages::{Pages, pages_of};
+use super::{Device, GpuError, Tuning};
+use crate::candidates::{Found, List, Query};
 
 /// The shader's source.
 pub const SWEEP_WGSL: &str = include_str!("../../shaders/sweep.wgsl");
-
-/// The size of the shader's `Chunk`: 64 KiB, which every adapter that meets WebGPU's default limits can bind.
-pub(super) const CHUNK_BYTES: u64 = 1 << 16;
-/// How many vertices a chunk holds: what is left of it after its header, at 8 bytes each.
-const CHUNK_VERTICES: usize = (CHUNK_BYTES as usize - size_of::<ChunkHeader>()) / 8;
-
-/// The workgroup's size in the shader.
-const WORKGROUP: u32 = 64;
 
 /// How many tests a round has at most, if that leaves work for one workgroup: 2^32, some seconds on the slowest adapter
 /// known (0.7e9 tests a second), well within the patience of drivers that watch for hanging kernels on real GPUs.
@@ -28,47 +21,60 @@ const TESTS_A_ROUND: usize = 1 << 32;
 /// How long a round may take before the device is given up.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The start of the shader's `Chunk`.
+/// How far apart the spans lie in their buffer: every device can bind a uniform buffer at multiples of 256 bytes.
+const SPAN_BYTES: u64 = 256;
+
+/// How many rounds can be on their way at a time: one on the GPU while the CPU works on the other.
+pub const HALVES: usize = 2;
+
+/// The shader's `Span`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-struct ChunkHeader {
+struct Span {
     first: u32,
-    count: u32,
+    end: u32,
     unused: [u32; 2],
 }
 
-/// The shader's `Round`.
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-struct Round {
-    queries: u32,
-    unused: [u32; 3],
-}
-
-/// Runs queries on a GPU. All buffers are made once.
-pub struct GpuPass<'m> {
-    model: &'m Model,
-    frame: Frame,
+/// Runs queries on a GPU, in up to [`HALVES`] rounds at a time.
+pub struct GpuPass {
     device: Device,
     pipeline: wgpu::ComputePipeline,
-    bindings: wgpu::BindGroup,
-    round: wgpu::Buffer,
+    layout: wgpu::BindGroupLayout,
+    pages: Pages,
+    halves: [Half; HALVES],
+    capacity: usize,
+    workgroup: u32,
+}
+
+/// The buffers of a round.
+struct Half {
     queries: wgpu::Buffer,
     found: wgpu::Buffer,
     readback: wgpu::Buffer,
-    chunks: u32,
-    capacity: usize,
+    /// A span for each page that a round touches, and how many there is room for.
+    spans: wgpu::Buffer,
+    room: usize,
+    bindings: wgpu::BindGroup,
+    sent: Option<Sent>,
 }
 
-impl<'m> GpuPass<'m> {
-    /// A pass over the model's vertices that takes `capacity` queries at once, or fewer where the device's limits or the
-    /// number of vertices ask for it.
+/// A round that is on its way.
+struct Sent {
+    submission: wgpu::SubmissionIndex,
+    mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+impl GpuPass {
+    /// A pass for the lists of `pivots` pivots, of at most `largest` vertices each, that keeps up to `budget` bytes of them
+    /// on the device. A round takes `tuning.queries` queries, or fewer where the device's limits or the size of the lists
+    /// ask for it.
     ///
     /// # Errors
     ///
     /// What the device complains of, be it the shader or the memory.
-    pub fn new(device: Device, model: &'m Model, capacity: usize) -> Result<Self, GpuError> {
-        Self::with_shader(device, model, capacity, SWEEP_WGSL)
+    pub fn new(device: Device, pivots: usize, largest: usize, budget: usize, tuning: Tuning) -> Result<Self, GpuError> {
+        Self::with_shader(device, pivots, largest, budget, tuning, SWEEP_WGSL)
     }
 
     /// The same with another shader in the place of `sweep.wgsl`: what tests use to see that they can fail.
@@ -76,61 +82,41 @@ impl<'m> GpuPass<'m> {
     /// # Errors
     ///
     /// As [`new`](Self::new).
-    pub fn with_shader(opened: Device, model: &'m Model, capacity: usize, wgsl: &str) -> Result<Self, GpuError> {
-        let frame = Frame::new(model);
+    pub fn with_shader(
+        opened: Device,
+        pivots: usize,
+        largest: usize,
+        budget: usize,
+        tuning: Tuning,
+        wgsl: &str,
+    ) -> Result<Self, GpuError> {
         let device = &opened.device;
         let limits = device.limits();
-        let chunks = chunked(&frame.vertices(model));
-        if chunks.len() as u64 > limits.max_buffer_size {
-            return Err(opened.unfit(format!("its buffers are too small for {} vertices", model.vertices().len())));
+        let pages = Pages::new(&opened, pivots, largest, budget);
+        if pages.block_bytes() > limits.max_buffer_size {
+            return Err(opened.unfit(format!("its buffers are too small for lists of {largest} vertices")));
         }
-        let capacity = capacity
+        let workgroup = tuning.workgroup.min(limits.max_compute_invocations_per_workgroup);
+        let capacity = tuning
+            .queries
             .min(limits.max_storage_buffer_binding_size as usize / size_of::<Found>())
-            .min(limits.max_compute_workgroups_per_dimension as usize * WORKGROUP as usize)
-            .min(TESTS_A_ROUND / model.vertices().len().max(1))
-            .max(WORKGROUP as usize)
-            .min(capacity.max(1));
-        let buffer = |label, size: usize, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: size as u64,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        let vertices = buffer("chunks", chunks.len(), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        opened.queue.write_buffer(&vertices, 0, &chunks);
-        let round = buffer("round", size_of::<Round>(), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
-        let queries = buffer("queries", capacity * size_of::<Query>(), BufferUsages::STORAGE | BufferUsages::COPY_DST);
-        let found_bytes = capacity * size_of::<Found>();
-        let found = buffer("found", found_bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-        let readback = buffer("readback", found_bytes, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
-
+            .min(limits.max_compute_workgroups_per_dimension as usize * workgroup as usize)
+            .min(TESTS_A_ROUND / largest.max(1))
+            .max(workgroup as usize)
+            .min(tuning.queries.max(1));
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("sweep"),
+            label: Some("round"),
             entries: &[
-                binding(0, wgpu::BufferBindingType::Uniform, false),
-                binding(1, wgpu::BufferBindingType::Uniform, true),
-                binding(2, wgpu::BufferBindingType::Storage { read_only: true }, false),
-                binding(3, wgpu::BufferBindingType::Storage { read_only: false }, false),
-            ],
-        });
-        let chunk = wgpu::BufferBinding { buffer: &vertices, offset: 0, size: wgpu::BufferSize::new(CHUNK_BYTES) };
-        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("sweep"),
-            layout: &layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: round.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Buffer(chunk) },
-                wgpu::BindGroupEntry { binding: 2, resource: queries.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 3, resource: found.as_entire_binding() },
+                binding(0, wgpu::BufferBindingType::Uniform, true),
+                binding(1, wgpu::BufferBindingType::Storage { read_only: true }, false),
+                binding(2, wgpu::BufferBindingType::Storage { read_only: false }, false),
             ],
         });
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some("sweep"),
             layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some("sweep"),
-                bind_group_layouts: &[Some(&layout)],
+                bind_group_layouts: &[Some(&layout), Some(pages.layout())],
                 immediate_size: 0,
             })),
             module: &device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -138,24 +124,15 @@ impl<'m> GpuPass<'m> {
                 source: wgpu::ShaderSource::Wgsl(wgsl.into()),
             }),
             entry_point: Some("sweep"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &[("WORKGROUP", f64::from(workgroup))],
+                ..Default::default()
+            },
             cache: None,
         });
+        let halves = std::array::from_fn(|_| Half::new(device, &layout, capacity));
         opened.check()?;
-        let chunks = (chunks.len() as u64 / CHUNK_BYTES) as u32;
-        Ok(GpuPass {
-            model,
-            frame,
-            device: opened,
-            pipeline,
-            bindings,
-            round,
-            queries,
-            found,
-            readback,
-            chunks,
-            capacity,
-        })
+        Ok(GpuPass { device: opened, pipeline, layout, pages, halves, capacity, workgroup })
     }
 
     /// The adapter on which it runs.
@@ -163,83 +140,158 @@ impl<'m> GpuPass<'m> {
         &self.device
     }
 
-    /// Waits for a submission and copies what it found.
-    fn read(
-        &self,
-        submission: wgpu::SubmissionIndex,
-        mapped: &mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
-        found: &mut [Found],
-    ) -> Result<(), GpuError> {
-        self.wait(submission)?;
-        self.device.check()?;
-        mapped.recv().map_err(|e| self.device.failed(e))?.map_err(|e| self.device.failed(e))?;
-        let bytes = size_of_val(found) as u64;
-        let view = self.readback.get_mapped_range(0..bytes).map_err(|e| self.device.failed(e))?;
-        bytemuck::cast_slice_mut(found).copy_from_slice(&view);
-        Ok(())
+    /// How many queries a round can take.
+    pub fn capacity(&self) -> usize {
+        self.capacity
     }
 
-    fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
-        let wait = PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
+    /// Starts to put a round together; see [`place`](Self::place).
+    pub fn start_round(&mut self) {
+        self.pages.start_round();
+    }
+
+    /// Where the list of `pivot`, which is `list`, lies on the device until the round is sent: the `first` of queries that
+    /// try it. It is brought there if it is not. `None` if there is no room beside the other lists of this round; the
+    /// first list of a round always finds room.
+    pub fn place(&mut self, pivot: u32, list: &List) -> Option<u32> {
+        self.pages.place(&self.device, pivot, list)
+    }
+
+    /// Sends a round of queries, sorted by `first`, whose lists were placed since the round was started.
+    ///
+    /// # Panics
+    ///
+    /// If there are more queries than a round can take, or if the half's last round was not collected.
+    pub fn send(&mut self, half: usize, queries: &[Query]) {
+        assert!(queries.len() <= self.capacity, "a round takes what it has room for");
+        assert!(self.halves[half].sent.is_none(), "a half takes one round at a time");
+        if queries.is_empty() {
+            return;
+        }
+        let spans = spans(queries);
+        let Device { device, queue, .. } = &self.device;
+        self.halves[half].make_room(device, &self.layout, spans.len());
+        let buffers = &self.halves[half];
+        queue.write_buffer(&buffers.queries, 0, bytemuck::cast_slice(queries));
+        let mut bytes = vec![0; spans.len() * SPAN_BYTES as usize];
+        for ((_, span), bytes) in spans.iter().zip(bytes.chunks_mut(SPAN_BYTES as usize)) {
+            let span = Span { first: span.start, end: span.end, unused: [0; 2] };
+            bytes[..size_of::<Span>()].copy_from_slice(bytemuck::bytes_of(&span));
+        }
+        queue.write_buffer(&buffers.spans, 0, &bytes);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("round") });
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&self.pipeline);
+            for (i, (page, span)) in spans.iter().enumerate() {
+                let (lists, offset) = self.pages.binding(*page);
+                pass.set_bind_group(0, &buffers.bindings, &[i as u32 * SPAN_BYTES as u32]);
+                pass.set_bind_group(1, lists, &[offset]);
+                pass.dispatch_workgroups((span.end - span.start).div_ceil(self.workgroup), 1, 1);
+            }
+        }
+        let bytes = (queries.len() * size_of::<Found>()) as u64;
+        encoder.copy_buffer_to_buffer(&buffers.found, 0, &buffers.readback, 0, bytes);
+        let (sender, mapped) = mpsc::sync_channel(1);
+        encoder.map_buffer_on_submit(&buffers.readback, wgpu::MapMode::Read, 0..bytes, move |result| {
+            // The receiver is gone only if waiting failed, which is reported there.
+            let _ = sender.send(result);
+        });
+        let submission = queue.submit([encoder.finish()]);
+        self.halves[half].sent = Some(Sent { submission, mapped });
+    }
+
+    /// Waits until the half's round, if there is one, is done.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of, or that it does not answer.
+    pub fn wait(&self, half: usize) -> Result<(), GpuError> {
+        let Some(sent) = &self.halves[half].sent else { return Ok(()) };
+        let wait = PollType::Wait { submission_index: Some(sent.submission.clone()), timeout: Some(PATIENCE) };
         match self.device.device.poll(wait) {
-            Ok(_) => Ok(()),
+            Ok(_) => self.device.check(),
             Err(wgpu::PollError::Timeout) => {
                 Err(GpuError::Timeout { adapter: self.device.summary().name.clone(), seconds: PATIENCE.as_secs() })
             }
             Err(other) => Err(self.device.failed(other)),
         }
     }
-}
 
-impl CandidatePass for GpuPass<'_> {
-    type Error = GpuError;
-
-    fn model(&self) -> &Model {
-        self.model
-    }
-
-    fn frame(&self) -> &Frame {
-        &self.frame
-    }
-
-    fn capacity(&self) -> usize {
-        self.capacity
-    }
-
-    fn run(&mut self, queries: &[Query], found: &mut [Found]) -> Result<(), GpuError> {
-        assert!(queries.len() <= self.capacity && queries.len() == found.len(), "a run takes what it has room for");
-        if queries.is_empty() {
-            return Ok(());
-        }
-        let (device, queue) = (&self.device.device, &self.device.queue);
-        let count = queries.len() as u32;
-        queue.write_buffer(&self.round, 0, bytemuck::bytes_of(&Round { queries: count, unused: [0; 3] }));
-        queue.write_buffer(&self.queries, 0, bytemuck::cast_slice(queries));
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("round") });
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(&self.pipeline);
-            for chunk in 0..self.chunks {
-                pass.set_bind_group(0, &self.bindings, &[chunk * CHUNK_BYTES as u32]);
-                pass.dispatch_workgroups(count.div_ceil(WORKGROUP), 1, 1);
-            }
-        }
-        let bytes = size_of_val(found) as u64;
-        encoder.copy_buffer_to_buffer(&self.found, 0, &self.readback, 0, bytes);
-        let (sender, mapped) = mpsc::sync_channel(1);
-        encoder.map_buffer_on_submit(&self.readback, wgpu::MapMode::Read, 0..bytes, move |result| {
-            // The receiver is gone only if waiting failed, which is reported there.
-            let _ = sender.send(result);
+    /// Waits for the half's round and copies what its queries found, in their order, into `found`, which is as long.
+    ///
+    /// # Errors
+    ///
+    /// As [`wait`](Self::wait).
+    pub fn collect(&mut self, half: usize, found: &mut [Found]) -> Result<(), GpuError> {
+        let waited = self.wait(half);
+        let Some(Sent { mapped, .. }) = self.halves[half].sent.take() else { return waited };
+        let read = waited.and_then(|()| {
+            mapped.recv().map_err(|e| self.device.failed(e))?.map_err(|e| self.device.failed(e))?;
+            let range = 0..size_of_val(found) as u64;
+            let view = self.halves[half].readback.get_mapped_range(range).map_err(|e| self.device.failed(e))?;
+            bytemuck::cast_slice_mut(found).copy_from_slice(&view);
+            Ok(())
         });
-        let submission = queue.submit([encoder.finish()]);
-        let read = self.read(submission, &mapped, found);
         // Also after an error, so that the next round finds the buffer free.
-        self.readback.unmap();
+        self.halves[half].readback.unmap();
         read
     }
 }
 
-fn binding(binding: u32, ty: wgpu::BufferBindingType, has_dynamic_offset: bool) -> wgpu::BindGroupLayoutEntry {
+impl Half {
+    fn new(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, capacity: usize) -> Self {
+        let (queries_bytes, found_bytes) = (capacity * size_of::<Query>(), capacity * size_of::<Found>());
+        let queries = buffer(device, "queries", queries_bytes, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+        let found = buffer(device, "found", found_bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let readback = buffer(device, "readback", found_bytes, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+        let room = 64;
+        let (spans, bindings) = bind_spans(device, layout, room, &queries, &found);
+        Half { queries, found, readback, spans, room, bindings, sent: None }
+    }
+
+    /// Makes room for `spans` spans.
+    fn make_room(&mut self, device: &wgpu::Device, layout: &wgpu::BindGroupLayout, spans: usize) {
+        if spans > self.room {
+            self.room = spans.next_power_of_two();
+            (self.spans, self.bindings) = bind_spans(device, layout, self.room, &self.queries, &self.found);
+        }
+    }
+}
+
+fn bind_spans(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    room: usize,
+    queries: &wgpu::Buffer,
+    found: &wgpu::Buffer,
+) -> (wgpu::Buffer, wgpu::BindGroup) {
+    let usage = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
+    let spans = buffer(device, "spans", room * SPAN_BYTES as usize, usage);
+    let size = wgpu::BufferSize::new(size_of::<Span>() as u64);
+    let span = wgpu::BufferBinding { buffer: &spans, offset: 0, size };
+    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("round"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(span) },
+            wgpu::BindGroupEntry { binding: 1, resource: queries.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 2, resource: found.as_entire_binding() },
+        ],
+    });
+    (spans, bindings)
+}
+
+fn buffer(device: &wgpu::Device, label: &str, size: usize, usage: BufferUsages) -> wgpu::Buffer {
+    let size = size as u64;
+    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+}
+
+pub(super) fn binding(
+    binding: u32,
+    ty: wgpu::BufferBindingType,
+    has_dynamic_offset: bool,
+) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
@@ -248,18 +300,19 @@ fn binding(binding: u32, ty: wgpu::BufferBindingType, has_dynamic_offset: bool) 
     }
 }
 
-/// The vertices as a row of the shader's `Chunk`s, at least one.
-fn chunked(vertices: &[glam::Vec2]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    for (i, chunk) in vertices.chunks(CHUNK_VERTICES).enumerate() {
-        let header = ChunkHeader { first: (i * CHUNK_VERTICES) as u32, count: chunk.len() as u32, unused: [0; 2] };
-        bytes.extend_from_slice(bytemuck::bytes_of(&header));
-        bytes.extend_from_slice(bytemuck::cast_slice(chunk));
-        bytes.resize((i + 1) * CHUNK_BYTES as usize, 0);
+/// The pages that queries sorted by `first` touch, in order, and for each which queries do.
+fn spans(queries: &[Query]) -> Vec<(u32, Range<u32>)> {
+    let mut spans: Vec<(u32, Range<u32>)> = Vec::new();
+    // The pages of neighbours are the same or follow each other, since lists do not overlap.
+    for (number, query) in (0..).zip(queries) {
+        for page in pages_of(query.first, query.count) {
+            match spans.iter_mut().rev().find(|(p, _)| *p <= page) {
+                Some((p, span)) if *p == page => span.end = number + 1,
+                _ => spans.push((page, number..number + 1)),
+            }
+        }
     }
-    // A scene without walls still has one chunk, of no vertices: it starts the lists.
-    bytes.resize(bytes.len().max(CHUNK_BYTES as usize), 0);
-    bytes
+    spans
 }
 
 #[cfg(test)]
@@ -268,6 +321,7 @@ mod tests {
 
     use naga::{Module, TypeInner};
 
+    use super::super::pages::{PAGE_BYTES, PAGE_VERTICES};
     use super::*;
     use crate::candidates::ROOM;
 
@@ -299,33 +353,38 @@ mod tests {
     #[test]
     fn host_and_shader_lay_their_structs_out_alike() {
         let module = shader();
-        let query = (size_of::<Query>() as u32, members!(Query: right, left, far));
-        assert_eq!(layout(&module, "Query"), query);
-        assert_eq!(layout(&module, "Found"), (size_of::<Found>() as u32, members!(Found: count, vertices)));
-        let (size, round) = layout(&module, "Round");
-        assert_eq!((size, &round[..1]), (size_of::<Round>() as u32, &members!(Round: queries)[..]));
-        let (size, mut chunk) = layout(&module, "Chunk");
-        assert_eq!(u64::from(size), CHUNK_BYTES);
-        assert_eq!(chunk.pop(), Some(("pairs".to_owned(), size_of::<ChunkHeader>() as u32)));
-        assert_eq!(chunk, members!(ChunkHeader: first, count, unused));
+        let query = members!(Query: right, first, left, count, far, unused);
+        assert_eq!(layout(&module, "Query"), (size_of::<Query>() as u32, query));
+        assert_eq!(layout(&module, "Found"), (size_of::<Found>() as u32, members!(Found: count, places)));
+        let (size, span) = layout(&module, "Span");
+        assert_eq!((size, &span[..2]), (size_of::<Span>() as u32, &members!(Span: first, end)[..]));
+        let (size, page) = layout(&module, "Page");
+        assert_eq!(u64::from(size), PAGE_BYTES);
+        assert_eq!(page.last(), Some(&("pairs".to_owned(), PAGE_BYTES as u32 - 8 * PAGE_VERTICES)));
+        assert_eq!(page[0], ("first".to_owned(), 0));
     }
 
     #[test]
     fn host_and_shader_agree_on_numbers() {
-        let module = shader();
-        assert_eq!(module.entry_points[0].workgroup_size, [WORKGROUP, 1, 1]);
         assert!(SWEEP_WGSL.contains(&format!("count < {ROOM}u")));
+        assert!(SWEEP_WGSL.contains(&format!("const PAGE: u32 = {PAGE_VERTICES}u;")));
     }
 
     #[test]
-    fn chunks_hold_all_vertices_once() {
-        let vertices: Vec<glam::Vec2> = (0..CHUNK_VERTICES + 3).map(|i| glam::Vec2::splat(i as f32)).collect();
-        let bytes = chunked(&vertices);
-        assert_eq!(bytes.len() as u64, 2 * CHUNK_BYTES);
-        let second = &bytes[CHUNK_BYTES as usize..];
-        let header: ChunkHeader = bytemuck::pod_read_unaligned(&second[..size_of::<ChunkHeader>()]);
-        assert_eq!((header.first as usize, header.count), (CHUNK_VERTICES, 3));
-        assert_eq!(&second[16..40], bytemuck::cast_slice::<_, u8>(&vertices[CHUNK_VERTICES..]));
-        assert_eq!(chunked(&[]).len() as u64, CHUNK_BYTES);
+    fn spans_cover_the_pages_of_their_queries() {
+        let query = |first, count| Query { first, count, ..Query::default() };
+        let page = PAGE_VERTICES;
+        assert_eq!(spans(&[]), []);
+        // Two short lists in page 0, one in page 2 that holds nothing, one that takes pages 3 to 5, one behind it.
+        let queries = [
+            query(0, 10),
+            query(0, 10),
+            query(10, 4),
+            query(2 * page, 0),
+            query(3 * page, 2 * page + 6),
+            query(3 * page, 2 * page + 6),
+            query(5 * page + 6, 8),
+        ];
+        assert_eq!(spans(&queries), [(0, 0..3), (2, 3..4), (3, 4..6), (4, 4..6), (5, 4..7)]);
     }
 }

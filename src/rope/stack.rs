@@ -138,6 +138,12 @@ impl Rope {
         }
     }
 
+    /// The length up to the pivot and the number of contacts of the taut rope to a free end that is neither on the pivot nor
+    /// such that the rope passes the pivot straight; the way from the pivot is to be added. O(1).
+    pub(crate) fn base(&self) -> (f64, u32) {
+        self.contacts.last().map_or((0.0, 0), |o| (o.from.length_to(o.at), o.from.depth + 1))
+    }
+
     /// The taut rope's length to the free end `a`, in the scene's unit, summed from the anchor on. O(1).
     pub fn length(&self, a: DVec2) -> f64 {
         self.taut_end(a).length_to(a)
@@ -146,6 +152,12 @@ impl Rope {
     /// The number of contacts of the taut rope to the free end `a`. O(1).
     pub fn depth(&self, a: DVec2) -> u32 {
         self.taut_end(a).depth
+    }
+
+    /// Both [`length`](Self::length) and [`depth`](Self::depth). O(1).
+    pub fn measure(&self, a: DVec2) -> (f64, u32) {
+        let end = self.taut_end(a);
+        (end.length_to(a), end.depth)
     }
 
     /// The unit vector along which the rope pulls the free end `a`; `None` when the rope has no length.

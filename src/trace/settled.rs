@@ -85,6 +85,12 @@ impl SettledTrace {
         TracePoint { at: self.points[i], hair }
     }
 
+    /// Whether each of its points ends a step and none touches a vertex.
+    #[inline]
+    pub fn is_plain(&self) -> bool {
+        self.added.is_empty() && self.hairs.is_empty()
+    }
+
     /// The step to which the move to point `i` belongs; 0 is the move from the anchor to the trace's first point.
     pub fn step(&self, i: usize) -> usize {
         i - self.added.partition_point(|&a| (a as usize) < i)

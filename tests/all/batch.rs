@@ -1,10 +1,10 @@
 //! The batch pipeline at its edges, and on real scenes: always the reference's records, event for event.
 
 use glam::DVec2;
-use tautline::candidates::{CandidatePass, CpuPass, Found, Frame, ROOM, swept};
+use tautline::candidates::{LISTS_BUDGET, Lists, Query, ROOM, Simd};
 use tautline::engine::{Cpu, Engine, EngineError, Funnel, Gpu, Job, Note, Reference};
 use tautline::example::{Walker, floor_plan, walks};
-use tautline::gpu::GpuPass;
+use tautline::gpu::{SWEEP_WGSL, Tuning};
 use tautline::rope::TraceRecord;
 use tautline::scene::{Model, Scene, read_scene};
 use tautline::trace::{SettledTrace, Trace, settle};
@@ -17,7 +17,8 @@ fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
 
 /// The `gpu` engine with a given number of slots.
 fn gpu(model: &Model, slots: usize) -> Gpu<'_> {
-    Gpu::with_pass(GpuPass::new(software(), model, slots).unwrap())
+    let tuning = Tuning { queries: slots, workgroup: 64 };
+    Gpu::with(software(), Lists::new(model), LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
 }
 
 fn settled(model: &Model, traces: &[Trace]) -> Vec<SettledTrace> {
@@ -48,7 +49,6 @@ fn batches_larger_than_the_slots() {
     let truth = run(&mut Reference::new(&model), &traces);
     for slots in [1, 3, 79, 80, 81] {
         assert_eq!(run(&mut gpu(&model, slots), &traces), truth, "{slots} slots");
-        assert_eq!(run(&mut Cpu::with_slots(&model, slots), &traces), truth, "{slots} slots");
     }
 }
 
@@ -131,11 +131,11 @@ fn overflowing_queries_are_evaluated_exactly() {
     let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap();
     let at = |turn: f64| 3.0 * DVec2::from_angle(turn);
     let points: Vec<DVec2> = vec![at(-1.2), at(-0.9), at(1.0), at(1.3), at(-1.1), at(0.1), at(-1.0)];
-    let frame = Frame::new(&model);
-    let mut found = [Found::default()];
-    let query = swept(&frame, model.anchor(), &points[1..3]).query;
-    CpuPass::new(&model, 1).run(&[query], &mut found).unwrap();
-    assert!(found[0].count as usize > ROOM && found[0].candidates().is_none(), "no overflow: {found:?}");
+    let lists = Lists::new(&model);
+    let (simd, mut found) = (Simd::detected(), vec![]);
+    let query = Query::leg(lists.frame(), model.anchor(), points[1], points[2]);
+    lists.of(60 * 2).sweep(simd, &query, &mut found);
+    assert!(found.len() > ROOM, "no overflow: {found:?}");
     // The first leg, from the anchor to the ring, is clear: it goes below all walls.
     let traces = settled(&model, &[Trace { id: 0, points }]);
     assert_eq!(traces[0].violation(), None);
@@ -152,12 +152,14 @@ fn real_coasts() {
     }
 }
 
-/// More vertices than one uniform buffer holds.
+/// More vertices than one page holds.
 #[test]
-fn scenes_of_several_chunks() {
+fn lists_of_several_pages() {
     let model = posts();
     assert_eq!(model.vertices().len(), 20_000);
-    agree(&model, &settled(&model, &walks(&model, Walker { step: 0.8, steps: 200, seed: 2 }, 10)));
+    let traces = settled(&model, &walks(&model, Walker { step: 0.8, steps: 200, seed: 2 }, 10));
+    agree(&model, &traces);
+    assert_eq!(run(&mut gpu(&model, 64).keep_all(), &traces), run(&mut Reference::new(&model), &traces));
 }
 
 #[test]
@@ -169,4 +171,24 @@ fn a_stopped_job_ends_early() {
         assert!(matches!(engine.evaluate(&traces, &job), Err(EngineError::Stopped)), "{}", engine.name());
         assert_eq!(job.steps(), 0);
     }
+}
+
+/// Lists come and go within a budget that holds a few of them only.
+#[test]
+fn lists_that_do_not_fit_the_budget_are_made_again() {
+    let (model, traces) = example(Walker { step: 0.3, steps: 300, seed: 9 }, 60);
+    let truth = run(&mut Reference::new(&model), &traces);
+    let mut roomy = Cpu::new(&model);
+    assert_eq!(run(&mut roomy, &traces), truth);
+    let pivots = roomy.lists().made();
+    let lists = || Lists::new(&model).budget(1 << 14);
+    let mut cramped = Cpu::with_lists(lists());
+    assert_eq!(run(&mut cramped, &traces), truth);
+    assert!(cramped.lists().made() > 2 * pivots, "{} lists, {pivots} pivots", cramped.lists().made());
+    // On the device there are two blocks at least, which hold more than this scene has: so lists of 20,000 vertices.
+    let model = posts();
+    let traces = settled(&model, &walks(&model, Walker { step: 0.8, steps: 100, seed: 4 }, 40));
+    let tuning = Tuning { queries: 7, workgroup: 64 };
+    let mut gpu = Gpu::with(software(), Lists::new(&model).budget(1 << 14), 0, tuning, SWEEP_WGSL).unwrap();
+    assert_eq!(run(&mut gpu, &traces), run(&mut Reference::new(&model), &traces));
 }

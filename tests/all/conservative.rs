@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 use proptest::prelude::*;
-use tautline::candidates::{CandidatePass, CpuPass, Found, swept};
+use tautline::candidates::{Frame, Lists, Query, Simd, Slopes, Window};
 use tautline::geometry::orient;
 use tautline::scene::{Model, Scene};
 
@@ -39,11 +39,14 @@ proptest! {
     #[test]
     fn no_vertex_in_a_swept_triangle_is_missed(
         pivot in unit_point(),
+        turned in prop::option::of(0.0f64..=1.0),
         points in prop::collection::vec(trace_point(), 2..6),
         near in prop::collection::vec((0usize..3, 0.0f64..1.0, 0.0f64..1e-6, -3i64..4, -3i64..4), 10),
     ) {
+        // Where the free end stands at first: at the first point, or on its way from there.
+        let start = turned.map(|along| points[0] + (points[1] - points[0]) * along).filter(|&s| s != pivot);
         // Vertices along the sides of the first leg's triangle, a hair to either side of them, and within the scene.
-        let corners = [pivot, points[0], points[1]];
+        let corners = [pivot, start.unwrap_or(points[0]), points[1]];
         let mut vertices = vec![DVec2::splat(1.0), DVec2::splat(-1.0)];
         for (side, along, inwards, x, y) in near {
             let (from, to) = (corners[side], corners[(side + 1) % 3]);
@@ -57,15 +60,61 @@ proptest! {
         }
         let walls = vertices.windows(2).map(|w| [w[0], w[1]]);
         let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::splat(1.0))).unwrap();
-        let mut pass = CpuPass::new(&model, 1);
-        let swept = swept(pass.frame(), pivot, &points);
-        let mut found = [Found::default()];
-        pass.run(&[swept.query], &mut found).unwrap();
-        let named = found[0].candidates().expect("there are fewer vertices than a query has room for");
-        for leg in points.windows(2).take(swept.legs) {
-            for (vertex, &p) in model.vertices().iter().enumerate() {
-                let inside = holds([pivot, leg[0], leg[1]], p);
-                prop_assert!(!inside || named.contains(&(vertex as u32)), "{p} of {:?}", [pivot, leg[0], leg[1]]);
+        let frame = Frame::new(&model);
+        for simd in [Simd::detected(), Simd::baseline()] {
+            let mut slopes = Slopes::default();
+            let window = Window::fold(simd, pivot, start.map(|s| s - pivot), &points, &mut slopes);
+            let (legs, query) = match window {
+                Some(window) => (window.legs, window.query(&frame, pivot)),
+                None => (1, Query::leg(&frame, pivot, points[0], points[1])),
+            };
+            let mut named = vec![];
+            Lists::new(&model).all().sweep(simd, &query, &mut named);
+            for leg in 0..legs {
+                let from = if leg == 0 { corners[1] } else { points[leg] };
+                for (vertex, &p) in model.vertices().iter().enumerate() {
+                    let inside = holds([pivot, from, points[leg + 1]], p);
+                    prop_assert!(!inside || named.contains(&(vertex as u32)), "{p} of {pivot} {from} {}", points[leg + 1]);
+                }
+            }
+        }
+    }
+
+    /// Legs that a window passes over without a look have both ends strictly on one side of the line, or are nearer to the
+    /// pivot than the vertex.
+    #[test]
+    fn no_crossing_of_a_line_is_passed_over(
+        pivot in unit_point(),
+        points in prop::collection::vec(trace_point(), 2..30),
+        along in 0.0f64..2.0,
+        ulps in (-3i64..4, -3i64..4),
+        on in 0usize..30,
+    ) {
+        // A vertex almost on the way to one of the points.
+        let p = nudged(pivot + (points[on % points.len()] - pivot) * along, ulps);
+        for simd in [Simd::detected(), Simd::baseline()] {
+            let mut slopes = Slopes::default();
+            let Some(window) = Window::fold(simd, pivot, None, &points, &mut slopes) else { continue };
+            for (line, is_wrapping) in [(window.wrapping(p - pivot), true), (window.unwrapping(p - pivot), false)] {
+                let mut met: Vec<usize> = vec![];
+                if let Some(line) = line {
+                    let mut leg = 0;
+                    loop {
+                        leg = line.first_met(simd, &slopes, leg, window.legs);
+                        if leg == window.legs {
+                            break;
+                        }
+                        met.extend(line.meets(&slopes, leg).then_some(leg));
+                        leg += 1;
+                    }
+                }
+                for leg in (0..window.legs).filter(|leg| !met.contains(leg)) {
+                    let [a, b] = [points[leg], points[leg + 1]];
+                    let [left, right] = [a, b].map(|a| orient(pivot, p, a));
+                    let one_side = (left > 0.0 && right > 0.0) || (left < 0.0 && right < 0.0);
+                    let within = is_wrapping && a.distance(pivot).max(b.distance(pivot)) < p.distance(pivot);
+                    prop_assert!(one_side || within, "leg {leg} from {a} to {b} about {pivot}, line to {p}");
+                }
             }
         }
     }

@@ -9,3 +9,4 @@ mod scenes;
 mod shader;
 mod support;
 mod touch;
+mod visibility;

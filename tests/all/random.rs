@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
+use tautline::candidates::Simd;
 use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Reference};
 use tautline::rope::{Status, TraceRecord, replay};
 use tautline::scene::Model;
@@ -90,6 +91,9 @@ fn cpu_gives_the_references_events() {
                 let truth = run(&mut Reference::new(model), batch);
                 assert_eq!(run(&mut Cpu::new(model), batch), truth);
                 assert_eq!(run(&mut Cpu::new(model).window(1), batch), truth);
+                assert_eq!(run(&mut Cpu::new(model).simd(Simd::baseline()), batch), truth);
+                assert_eq!(run(&mut Cpu::new(model).keep_all(), batch), truth);
+                assert_eq!(run(&mut Cpu::new(model).keep_all().window(1), batch), truth);
             });
         }
     }

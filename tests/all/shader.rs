@@ -1,8 +1,9 @@
 //! That the comparison of the shader with the reference is able to fail.
 
+use tautline::candidates::{LISTS_BUDGET, Lists};
 use tautline::engine::{Engine, Gpu, Job, Reference};
 use tautline::example::{Walker, floor_plan, walks};
-use tautline::gpu::{GpuError, GpuPass, SWEEP_WGSL};
+use tautline::gpu::{GpuError, SWEEP_WGSL, Tuning};
 use tautline::scene::Model;
 use tautline::trace::settle;
 
@@ -16,31 +17,41 @@ const CHANGES: [(&str, &str); 9] = [
     ("query.far.x * p.x", "query.far.x + p.x"),
     ("far) >= 0.0", "far) == 0.0"),
     ("count < 15u", "count > 15u"),
-    ("lane >= round.queries", "lane < round.queries"),
-    ("chunk.first + 2u * i);", "chunk.first + 1u * i);"),
-    ("2u * i + 1u < chunk.count", "2u * i + 1u > chunk.count"),
-    ("chunk.count + 1u) / 2u", "chunk.count + 1u) / 4u"),
+    ("lane >= span.end", "lane < span.end"),
+    ("page.first + 2u * i);", "page.first + 1u * i);"),
+    ("2u * i + 1u < end", "2u * i + 1u > end"),
+    ("2u * i < end", "3u * i < end"),
 ];
+
+/// Of lists that take several pages.
+const PAGED: [(&str, &str); 4] = [
+    ("if query.first < page.first", "if query.first > page.first"),
+    ("page.first + 2u * i);", "page.first - 2u * i + 4u * i - page.first);"),
+    ("page.first + 2u * i + 1u);", "page.first / 2u + 2u * i + 1u);"),
+    ("max(query.first, page.first)", "min(query.first, page.first)"),
+];
+
+/// Of rounds whose lists lie in several pages.
+const SPREAD: [(&str, &str); 1] = [("span.first + id.x", "id.x - span.first")];
 
 #[test]
 fn a_shader_with_one_operator_changed_is_found_out() {
     let plan = Model::new(floor_plan(), None).unwrap();
-    found_out(&plan, Walker { step: 0.3, steps: 300, seed: 3 }, &CHANGES);
-    let chunked = [
-        ("if chunk.first > 0u", "if chunk.first < 0u"),
-        ("chunk.first + 2u * i);", "chunk.first - 2u * i + 4u * i - chunk.first);"),
-        ("chunk.first + 2u * i + 1u);", "chunk.first / 2u + 2u * i + 1u);"),
-    ];
-    found_out(&posts(), Walker { step: 0.8, steps: 200, seed: 2 }, &chunked);
+    found_out(&plan, false, Walker { step: 0.3, steps: 300, seed: 3 }, 100, &CHANGES);
+    found_out(&posts(), true, Walker { step: 0.8, steps: 200, seed: 2 }, 20, &PAGED);
+    found_out(&posts(), false, Walker { step: 0.8, steps: 200, seed: 2 }, 100, &SPREAD);
 }
 
-fn found_out(model: &Model, walker: Walker, changes: &[(&str, &str)]) {
-    let traces: Vec<_> = walks(model, walker, 20).iter().map(|t| settle(model, t)).collect();
+fn found_out(model: &Model, keep_all: bool, walker: Walker, count: u64, changes: &[(&str, &str)]) {
+    let traces: Vec<_> = walks(model, walker, count).iter().map(|t| settle(model, t)).collect();
     let truth = Reference::new(model).evaluate(&traces, &Job::new()).unwrap();
     let device = software();
     let agrees = |wgsl: &str| {
-        let pass = GpuPass::with_shader(device.clone(), model, 64, wgsl).unwrap();
-        Gpu::with_pass(pass).evaluate(&traces, &Job::new()).unwrap() == truth
+        let lists = if keep_all { Lists::new(model).keep_all() } else { Lists::new(model) };
+        let tuning = Tuning { queries: 64, workgroup: 64 };
+        let mut engine = Gpu::with(device.clone(), lists, LISTS_BUDGET, tuning, wgsl).unwrap();
+        // A changed shader may name vertices that it was not given, which is an error.
+        engine.evaluate(&traces, &Job::new()).is_ok_and(|records| records == truth)
     };
     assert!(agrees(SWEEP_WGSL));
     for (right, wrong) in changes {
@@ -53,13 +64,15 @@ fn found_out(model: &Model, walker: Walker, changes: &[(&str, &str)]) {
 fn a_device_outlives_a_shader_that_it_refuses() {
     let model = Model::new(floor_plan(), None).unwrap();
     let device = software();
+    let tuning = |queries| Tuning { queries, workgroup: 64 };
+    let broken_engine = |wgsl| Gpu::with(device.clone(), Lists::new(&model), LISTS_BUDGET, tuning(8), wgsl);
     for broken in ["this is no shader", "@compute @workgroup_size(64) fn other() {}"] {
-        let Err(error) = GpuPass::with_shader(device.clone(), &model, 8, broken) else { panic!("{broken} was taken") };
+        let Err(error) = broken_engine(broken) else { panic!("{broken} was taken") };
         assert!(matches!(error, GpuError::Failed { .. }), "{error}");
     }
     let traces = [settle(&model, &walks(&model, Walker { step: 0.3, steps: 50, seed: 3 }, 1)[0])];
     // No room at all is room for one.
-    let mut engine = Gpu::with_pass(GpuPass::new(device, &model, 0).unwrap());
+    let mut engine = Gpu::with(device.clone(), Lists::new(&model), LISTS_BUDGET, tuning(0), SWEEP_WGSL).unwrap();
     let truth = Reference::new(&model).evaluate(&traces, &Job::new()).unwrap();
     assert_eq!(engine.evaluate(&traces, &Job::new()).unwrap(), truth);
 }

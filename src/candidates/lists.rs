@@ -1,0 +1,161 @@
+//! The lists of all pivots: made on first use, shared by all threads and traces, within a memory budget.
+
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
+
+use super::{Frame, List};
+use crate::scene::Model;
+use crate::visibility::{Scratch, Visibility};
+
+/// How much memory the lists may take unless told otherwise: 256 MiB, enough for some 200,000 pivots.
+pub const LISTS_BUDGET: usize = 256 << 20;
+
+/// Which vertices each pivot's queries try.
+pub struct Lists<'m> {
+    model: &'m Model,
+    frame: Frame,
+    keep_all: bool,
+    budget: usize,
+    visibility: OnceLock<Option<Visibility>>,
+    all: OnceLock<Arc<List>>,
+    /// By pivot: vertices first, then the anchor.
+    entries: Box<[Entry]>,
+    bytes: AtomicUsize,
+    /// Counts the lists made: the clock by which "recently" is told.
+    made: AtomicU64,
+    looks: Mutex<Vec<(Scratch, Vec<u32>)>>,
+    dropping: Mutex<()>,
+}
+
+#[derive(Default)]
+struct Entry {
+    list: RwLock<Option<Arc<List>>>,
+    used: AtomicU64,
+}
+
+impl<'m> Lists<'m> {
+    /// Lists of what each pivot sees, of which none is made yet.
+    pub fn new(model: &'m Model) -> Self {
+        Lists {
+            model,
+            frame: Frame::new(model),
+            keep_all: false,
+            budget: LISTS_BUDGET,
+            visibility: OnceLock::new(),
+            all: OnceLock::new(),
+            entries: (0..=model.vertices().len()).map(|_| Entry::default()).collect(),
+            bytes: AtomicUsize::new(0),
+            made: AtomicU64::new(0),
+            looks: Mutex::new(Vec::new()),
+            dropping: Mutex::new(()),
+        }
+    }
+
+    /// With all vertices in every list, as the seed of the method has it.
+    #[must_use]
+    pub fn keep_all(mut self) -> Self {
+        self.keep_all = true;
+        self
+    }
+
+    /// With a memory budget in bytes; the lists not used for longest go first.
+    #[must_use]
+    pub fn budget(mut self, bytes: usize) -> Self {
+        self.budget = bytes;
+        self
+    }
+
+    /// The model whose vertices are listed.
+    pub fn model(&self) -> &'m Model {
+        self.model
+    }
+
+    /// The frame of the lists' coordinates.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// How many lists have been made so far, those made again counted again.
+    pub fn made(&self) -> u64 {
+        self.made.load(Ordering::Relaxed)
+    }
+
+    /// How much memory the lists take, in bytes.
+    pub fn bytes(&self) -> usize {
+        self.bytes.load(Ordering::Relaxed)
+    }
+
+    /// The list of all vertices.
+    pub fn all(&self) -> &Arc<List> {
+        self.all.get_or_init(|| {
+            let numbers: Vec<u32> = (0..self.model.vertices().len() as u32).collect();
+            Arc::new(List::new(self.model, &self.frame, &numbers))
+        })
+    }
+
+    /// Whether every pivot has the list of [`all`](Self::all) vertices: because that was asked for, or because the scene
+    /// cannot be triangulated.
+    pub fn keeps_all(&self) -> bool {
+        self.keep_all || self.visibility().is_none()
+    }
+
+    /// The pivot whose list is that of `pivot` too: itself, unless all pivots share one.
+    pub fn key(&self, pivot: u32) -> u32 {
+        if self.keeps_all() { self.model.vertices().len() as u32 } else { pivot }
+    }
+
+    /// The list of `pivot`: a vertex, or the number of vertices for the anchor.
+    ///
+    /// Made on first use; see [`Visibility::look`] for what is in it and what that costs.
+    pub fn of(&self, pivot: u32) -> Arc<List> {
+        let entry = &self.entries[pivot as usize];
+        if let Some(list) = &*entry.list.read().unwrap_or_else(PoisonError::into_inner) {
+            entry.used.store(self.made(), Ordering::Relaxed);
+            return Arc::clone(list);
+        }
+        if self.keeps_all() {
+            return Arc::clone(self.all());
+        }
+        self.make(pivot)
+    }
+
+    fn visibility(&self) -> Option<&Visibility> {
+        self.visibility.get_or_init(|| Visibility::new(self.model)).as_ref()
+    }
+
+    #[cold]
+    fn make(&self, pivot: u32) -> Arc<List> {
+        let pool = || self.looks.lock().unwrap_or_else(PoisonError::into_inner);
+        let (mut scratch, mut seen) = pool().pop().unwrap_or_default();
+        self.visibility().expect("checked before").look(pivot, &mut scratch, &mut seen);
+        let list = Arc::new(List::new(self.model, &self.frame, &seen));
+        pool().push((scratch, seen));
+        let now = self.made.fetch_add(1, Ordering::Relaxed);
+        let entry = &self.entries[pivot as usize];
+        entry.used.store(now, Ordering::Relaxed);
+        let before = entry.list.write().unwrap_or_else(PoisonError::into_inner).replace(Arc::clone(&list));
+        // Another thread may have made the same list meanwhile.
+        self.bytes.fetch_sub(before.map_or(0, |b| b.bytes()), Ordering::Relaxed);
+        if self.bytes.fetch_add(list.bytes(), Ordering::Relaxed) + list.bytes() > self.budget {
+            self.drop_some();
+        }
+        list
+    }
+
+    /// Drops the lists not used for longest until a quarter of the budget is free, so that this is rarely done.
+    #[cold]
+    fn drop_some(&self) {
+        // One thread does it; the others go on meanwhile.
+        let Ok(_dropping) = self.dropping.try_lock() else { return };
+        let used = self.entries.iter().map(|e| e.used.load(Ordering::Relaxed));
+        let mut oldest: Vec<(u64, usize)> = used.zip(0..).collect();
+        oldest.sort_unstable();
+        for (_, pivot) in oldest {
+            if self.bytes() <= self.budget / 4 * 3 {
+                break;
+            }
+            let dropped = self.entries[pivot].list.write().unwrap_or_else(PoisonError::into_inner).take();
+            self.bytes.fetch_sub(dropped.map_or(0, |d| d.bytes()), Ordering::Relaxed);
+        }
+    }
+}

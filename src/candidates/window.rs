@@ -1,0 +1,162 @@
+//! Windows: the legs that one query covers, seen from the pivot.
+//!
+//! Everything is measured against an axis, the first direction of the window: a point's *slope* is the tangent of its angle
+//! from the axis. The legs' slopes span the wedge that the rope's last leg sweeps; and the slope of a line through the
+//! pivot tells on which legs the rope can cross it, without any exact test.
+
+use glam::DVec2;
+
+use super::simd::{BLOCK, Simd};
+use super::{Frame, Query};
+
+/// The largest slope in a window: beyond it (56 degrees from the axis) the next window begins. The wedge stays well below
+/// a half turn.
+const STEEPEST: f64 = 1.5;
+
+/// By how much two slopes must differ for their order to be certain: 2^-45.
+///
+/// With u = 2^-53: a way from the pivot is good to u in each coordinate, so its products with the axis (which is taken as it
+/// is, rounded) are good to 4u times both lengths, and the slope s to 4u (1 + |s|) sqrt(1 + s^2) + u |s|. That is 20u for
+/// points of the window, whose slopes are at most [`STEEPEST`], and 90u for lines, whose slopes are at most [`FLAT`].
+const CERTAIN: f64 = 1.0 / (1u64 << 45) as f64;
+
+/// By what share squared distances must differ for their order to be certain: each is good to 6u, with u = 2^-53.
+const SURELY: f64 = 1.0 / (1u64 << 45) as f64;
+
+/// Lines of a greater slope do not pass through the window.
+const FLAT: f64 = 4.0;
+
+/// The slopes of a window's points and the squares of their distances from the pivot, in the scene's unit; entry i is point
+/// i of the window. Kept from window to window for its memory.
+#[derive(Debug, Default)]
+pub struct Slopes {
+    pub(super) slope: Vec<f64>,
+    pub(super) squared: Vec<f64>,
+}
+
+impl Slopes {
+    /// The square of the greatest distance from the pivot of points `from` to `to`.
+    #[inline]
+    pub fn farthest(&self, simd: Simd, from: usize, to: usize) -> f64 {
+        simd.greatest(&self.squared[from..=to])
+    }
+}
+
+/// A window of legs about one pivot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// How many legs it has, at least 1.
+    pub legs: usize,
+    /// The direction from which slopes are measured; not a unit vector.
+    pub axis: DVec2,
+    /// The least and the greatest slope.
+    pub low: f64,
+    /// See [`low`](Self::low).
+    pub high: f64,
+    /// The square of the greatest distance from the pivot.
+    pub squared: f64,
+}
+
+impl Window {
+    /// The longest window about `pivot` that starts with the first of `points` and whose directions do not spread too far;
+    /// `None` if not even one leg fits. `start` is the direction in which the rope's last leg points at the start if that
+    /// is not at the first point, but somewhere on the first leg.
+    ///
+    /// Fills `slopes` for the points of the window; that of the first means nothing if there is a `start`.
+    /// O(legs), [`BLOCK`] points at a time.
+    pub fn fold(
+        simd: Simd,
+        pivot: DVec2,
+        start: Option<DVec2>,
+        points: &[DVec2],
+        slopes: &mut Slopes,
+    ) -> Option<Window> {
+        let first = points[0] - pivot;
+        let axis = start.unwrap_or(first);
+        if axis == DVec2::ZERO {
+            return None;
+        }
+        let size = points.len().next_multiple_of(BLOCK) + BLOCK;
+        if slopes.slope.len() < size {
+            slopes.slope.resize(size, 0.0);
+            slopes.squared.resize(size, 0.0);
+        }
+        (slopes.slope[0], slopes.squared[0]) = (0.0, first.length_squared());
+        let mut window = Window { legs: 0, axis, low: 0.0, high: 0.0, squared: slopes.squared[0] };
+        window.legs = simd.slopes(pivot, axis, STEEPEST, &points[1..], slopes);
+        if window.legs == 0 {
+            return None;
+        }
+        (window.low, window.high) = simd.extent(&slopes.slope[..=window.legs]);
+        window.squared = simd.greatest(&slopes.squared[..=window.legs]);
+        Some(window)
+    }
+
+    /// The directions that bound it, right and left.
+    fn bounds(&self) -> (DVec2, DVec2) {
+        (self.axis + self.low * self.axis.perp(), self.axis + self.high * self.axis.perp())
+    }
+
+    /// The triangle that holds all that the rope's last leg sweeps.
+    pub fn query(&self, frame: &Frame, pivot: DVec2) -> Query {
+        let (right, left) = self.bounds();
+        Query::wedge(frame, pivot, right, left, self.squared.sqrt())
+    }
+
+    /// The line through the pivot along which the rope turns back, if it can pass through the window: that from the prior
+    /// at `-way` from the pivot.
+    pub fn unwrapping(&self, way: DVec2) -> Option<Line> {
+        self.line(way, 0.0)
+    }
+
+    /// The line through the pivot and the vertex at `way` from it, if the free end can pass it beyond the vertex.
+    pub fn wrapping(&self, way: DVec2) -> Option<Line> {
+        let beyond = way.length_squared() * (1.0 - SURELY);
+        if beyond > self.squared { None } else { self.line(way, beyond) }
+    }
+
+    fn line(&self, way: DVec2, beyond: f64) -> Option<Line> {
+        let slope = self.axis.perp_dot(way) / self.axis.dot(way);
+        // Not a number, for a way of no length, is kept: no slope is then certain.
+        let passes_by = slope.abs() > FLAT || slope > self.high + CERTAIN || slope < self.low - CERTAIN;
+        (!passes_by).then_some(Line { low: slope - CERTAIN, high: slope + CERTAIN, beyond })
+    }
+}
+
+/// A line through the pivot that the free end must cross for something to happen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Line {
+    /// Between which bounds its slope surely lies.
+    low: f64,
+    high: f64,
+    /// Nothing happens on legs whose ends are nearer to the pivot, squared.
+    beyond: f64,
+}
+
+impl Line {
+    /// Whether something can happen on leg `leg`. On a first leg that starts on its way, the part before is left out.
+    #[inline]
+    pub fn meets(&self, slopes: &Slopes, leg: usize) -> bool {
+        let (a, b) = (slopes.slope[leg], slopes.slope[leg + 1]);
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        let farthest = slopes.squared[leg].max(slopes.squared[leg + 1]);
+        // Bounds that are no numbers are met.
+        !(self.high < low || self.low > high || farthest < self.beyond)
+    }
+
+    /// The first leg from `leg` on, below `legs`, of which it is not certain that both its ends lie strictly on one side of
+    /// the line; `legs` if there is none.
+    #[inline]
+    pub fn first_met(&self, simd: Simd, slopes: &Slopes, leg: usize, legs: usize) -> usize {
+        let slopes = &slopes.slope[leg..=legs];
+        let first = slopes[0];
+        let run = if first > self.high {
+            simd.above(slopes, self.high)
+        } else if first < self.low {
+            simd.below(slopes, self.low)
+        } else {
+            1
+        };
+        leg + run - 1
+    }
+}

@@ -1,0 +1,85 @@
+//! What a pivot sees: the vertices that the rope can wrap round next.
+//!
+//! While a trace keeps to the rules, the rope's last leg is free of walls. So the next contact is visible from the pivot
+//! and tangent there. Both are exact signs of input points; where walls cannot be triangulated (they cross at a point
+//! that no f64 names), a vertex too many is listed, never one too few.
+
+mod crossings;
+mod expand;
+mod mesh;
+
+use glam::DVec2;
+
+use self::mesh::Mesh;
+use crate::geometry::{opposite, orient};
+use crate::scene::Model;
+
+pub use self::expand::Scratch;
+
+/// A constrained triangulation of a model's walls, from which to look.
+pub struct Visibility {
+    mesh: Mesh,
+    /// The far ends of the walls that meet at each vertex, and where each vertex's begin.
+    ends: Vec<u32>,
+    first_end: Vec<u32>,
+}
+
+impl Visibility {
+    /// Triangulates the model; `None` where the triangulation cannot take its coordinates (they span more than 140
+    /// binary orders of magnitude). O(n log n) for walls that do not cross.
+    pub fn new(model: &Model) -> Option<Self> {
+        let mesh = Mesh::new(model)?;
+        let n = model.vertices().len();
+        let mut first_end = vec![0; n + 1];
+        for &v in model.scene().walls().iter().flatten() {
+            first_end[v as usize + 1] += 1;
+        }
+        for v in 0..n {
+            first_end[v + 1] += first_end[v];
+        }
+        let mut ends = vec![0; first_end[n] as usize];
+        let mut next = first_end.clone();
+        for &[u, v] in model.scene().walls() {
+            for (here, there) in [(u, v), (v, u)] {
+                ends[next[here as usize] as usize] = there;
+                next[here as usize] += 1;
+            }
+        }
+        Some(Visibility { mesh, ends, first_end })
+    }
+
+    /// Writes the vertices that the rope can wrap round next from `pivot` (a vertex, or the number of vertices for the
+    /// anchor) into `seen`, each once: those that are visible from it, in the closed sense, and tangent there.
+    ///
+    /// A vertex exactly behind another on one line may be left out: the nearer one is met first, and then sees it.
+    /// O(triangles seen through), by triangular expansion (Bungiu et al., "Efficient computation of visibility
+    /// polygons", EuroCG 2014).
+    ///
+    /// # Panics
+    ///
+    /// If `pivot` is more than the number of vertices.
+    pub fn look(&self, pivot: u32, scratch: &mut Scratch, seen: &mut Vec<u32>) {
+        seen.clear();
+        let o = self.mesh.pivot(pivot);
+        self.mesh.expand(o, scratch, seen);
+        let at = self.mesh.at(o);
+        seen.retain(|&v| self.is_tangent(at, v));
+    }
+
+    /// Whether the walls that meet at `v` leave one side of the line from `o` to it free.
+    fn is_tangent(&self, o: DVec2, v: u32) -> bool {
+        let (first, last) = (self.first_end[v as usize] as usize, self.first_end[v as usize + 1] as usize);
+        let p = self.mesh.at(v);
+        let mut side = 0.0;
+        for &end in &self.ends[first..last] {
+            let here = orient(o, p, self.mesh.at(end));
+            if opposite(side, here) {
+                return false;
+            }
+            if here != 0.0 {
+                side = here;
+            }
+        }
+        true
+    }
+}

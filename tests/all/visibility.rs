@@ -1,0 +1,84 @@
+//! What a pivot sees, against a look at every wall for every vertex.
+
+use glam::DVec2;
+use proptest::prelude::*;
+use tautline::geometry::{between, opposite, orient};
+use tautline::scene::Model;
+use tautline::visibility::{Scratch, Visibility};
+
+use crate::scenes::{KINDS, Kind, recipe};
+
+/// Whether a wall lies properly across the way from `o` to `p`.
+fn is_blocked(model: &Model, o: DVec2, p: DVec2) -> bool {
+    (0..model.scene().walls().len()).any(|wall| {
+        let [u, v] = model.scene().ends(wall);
+        opposite(orient(u, v, o), orient(u, v, p)) && opposite(orient(o, p, u), orient(o, p, v))
+    })
+}
+
+/// Whether the walls that meet at vertex `v` leave one side of the line from `o` free.
+fn is_tangent(model: &Model, o: DVec2, v: u32) -> bool {
+    let p = model.vertices()[v as usize];
+    let meets = model.scene().walls().iter().filter(|w| w.contains(&v));
+    let sides: Vec<f64> = meets
+        .map(|w| model.vertices()[if w[0] == v { w[1] } else { w[0] } as usize])
+        .map(|end| orient(o, p, end))
+        .collect();
+    !(sides.iter().any(|&s| s > 0.0) && sides.iter().any(|&s| s < 0.0))
+}
+
+/// Whether walls cross where no vertex is.
+fn has_crossings(model: &Model) -> bool {
+    let ends: Vec<_> = (0..model.scene().walls().len()).map(|w| model.scene().ends(w)).collect();
+    ends.iter().enumerate().any(|(i, &[a, b])| {
+        ends[..i]
+            .iter()
+            .any(|&[c, d]| opposite(orient(a, b, c), orient(a, b, d)) && opposite(orient(c, d, a), orient(c, d, b)))
+    })
+}
+
+/// Looks from every pivot of a model, and returns how many vertices were seen.
+fn check(kind: Kind, model: &Model) -> Result<usize, TestCaseError> {
+    let Some(visibility) = Visibility::new(model) else {
+        prop_assert!(matches!(kind, Kind::Tiny | Kind::Huge | Kind::Far), "{kind:?} can be triangulated");
+        return Ok(0);
+    };
+    let exact = kind == Kind::Lattice || !has_crossings(model);
+    let (mut scratch, mut seen, mut total) = (Scratch::default(), vec![], 0);
+    for pivot in 0..=model.vertices().len() as u32 {
+        visibility.look(pivot, &mut scratch, &mut seen);
+        total += seen.len();
+        let mut once = seen.clone();
+        once.sort_unstable();
+        once.dedup();
+        prop_assert_eq!(once.len(), seen.len(), "a vertex is listed twice");
+        let o = model.vertices().get(pivot as usize).copied().unwrap_or(model.anchor());
+        for (v, &p) in (0..).zip(model.vertices()) {
+            let hidden = is_blocked(model, o, p);
+            let behind = model.vertices().iter().any(|&q| orient(o, p, q) == 0.0 && between(o, p, q));
+            if p != o && !hidden && !behind && is_tangent(model, o, v) {
+                prop_assert!(seen.contains(&v), "{p} is missing from the list of {o}");
+            }
+            if exact && seen.contains(&v) {
+                prop_assert!(!hidden && is_tangent(model, o, v), "{p} cannot be next after {o}");
+            }
+        }
+    }
+    Ok(total)
+}
+
+#[test]
+fn lists_hold_what_a_look_at_every_wall_finds() {
+    for kind in KINDS {
+        let cases = 100 * ProptestConfig::default().cases / 256;
+        let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
+        let mut runner = proptest::test_runner::TestRunner::new(config);
+        let total = std::cell::Cell::new(0);
+        let result = runner.run(&recipe(kind, false), |recipe| {
+            total.set(total.get() + check(kind, &recipe.model())?);
+            Ok(())
+        });
+        result.unwrap_or_else(|e| panic!("{kind:?}: {e}"));
+        assert!(total.get() > 1000 || matches!(kind, Kind::Tiny | Kind::Huge), "{kind:?}: only {} seen", total.get());
+    }
+}
