@@ -1,0 +1,95 @@
+//! One triangle of the mesh, and its three doors.
+
+use glam::DVec2;
+
+use crate::geometry::orient;
+
+/// The corner, or edge, after each of a triangle's three.
+pub(super) const NEXT: [usize; 3] = [1, 2, 0];
+
+/// An edge as seen from inside one of the two triangles that it parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Door(u32);
+
+impl Door {
+    /// Behind the edges of the frame there is none.
+    pub(super) const NONE: Door = Door(u32::MAX);
+
+    pub(super) fn new(triangle: u32, edge: usize) -> Door {
+        Door(triangle * 4 + edge as u32)
+    }
+
+    /// The triangle from inside which it is seen.
+    #[inline]
+    pub(super) fn triangle(self) -> u32 {
+        self.0 / 4
+    }
+
+    /// Which of that triangle's edges it is.
+    #[inline]
+    pub(super) fn edge(self) -> usize {
+        (self.0 % 4) as usize
+    }
+}
+
+/// A triangle with all that following a trace needs, in one cache line.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Triangle {
+    /// Its corners, counter-clockwise.
+    pub corners: [DVec2; 3],
+    /// The edge from corner i to corner i + 1 as seen from behind it.
+    pub beyond: [Door; 3],
+}
+
+impl Triangle {
+    /// A number with the exact sign of the side on which `a` lies of an edge: above 0 inside.
+    #[inline]
+    pub(super) fn side(&self, edge: usize, a: DVec2) -> f64 {
+        orient(self.corners[edge], self.corners[NEXT[edge]], a)
+    }
+
+    /// Whether the closed triangle holds `a`.
+    pub(super) fn touches(&self, a: DVec2) -> bool {
+        (0..3).all(|edge| self.side(edge, a) >= 0.0)
+    }
+
+    /// Whether `a` lies strictly inside, beyond all doubt: where rounding could matter the answer is no.
+    ///
+    /// With u = 2^-53, let x and y be the two computed products of an edge, and X and Y the true ones. Each is off by the
+    /// rounding of two differences and a product, less than 3.1 u of it. The point is surely inside of the edge, X > Y,
+    /// in either of two cases. Where x and y have different signs (or one is 0), X and Y have them too, since rounded
+    /// differences and products keep their signs, and x > y is enough. Else |x| + |y| = |x + y|, and x - y > 3.2 u |x + y|
+    /// is enough. The test asks for x - y > 4 u |x + y| with both sides rounded, which is more: their roundings change
+    /// them by a few u of themselves. Within the limits of coordinates nothing over- or underflows.
+    #[inline]
+    pub(super) fn surely_holds(&self, a: DVec2) -> bool {
+        const BOUND: f64 = 4.0 / (1u64 << 53) as f64;
+        let [p, q, r] = self.corners.map(|c| c - a);
+        let is_left = |p: DVec2, q: DVec2| {
+            let (x, y) = (p.x * q.y, p.y * q.x);
+            x - y > BOUND * (x + y).abs()
+        };
+        is_left(p, q) & is_left(q, r) & is_left(r, p)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_on_edges_and_corners_are_in_doubt() {
+        let p = |x: f64, y: f64| DVec2::new(x, y);
+        let triangle = Triangle { corners: [p(0.1, 0.1), p(0.7, 0.3), p(0.2, 0.9)], beyond: [Door::NONE; 3] };
+        assert!(triangle.surely_holds(p(0.3, 0.4)) && !triangle.surely_holds(p(0.5, 0.1)));
+        for i in 0..3 {
+            let (u, v) = (triangle.corners[i], triangle.corners[NEXT[i]]);
+            assert!(triangle.touches(u) && !triangle.surely_holds(u));
+            for k in 0..64 {
+                let a = u.lerp(v, f64::from(k) / 64.0);
+                assert!(!triangle.surely_holds(a) || triangle.side(i, a) > 0.0);
+            }
+        }
+    }
+}
