@@ -1,15 +1,23 @@
 //! The crossing word of a trace: the edges of the triangulation that it crosses, reduced.
 
 use super::mesh::Mesh;
-use super::triangle::{Door, NEXT};
+use super::triangle::{DOUBT, Door, NEXT};
 use crate::geometry::{TracePoint, orient_step};
 use crate::trace::SettledTrace;
+
+/// By the set of edges behind which a leg's goal lies: a corner, and the edge through which the leg leaves when it passes
+/// that corner on its left, and the edge else. Behind one edge, it leaves through that. Behind two, it passes the corner
+/// between them, and leaves through the edge that ends at it or the one that starts there.
+const EXITS: [(usize, [usize; 2]); 7] =
+    [(0, [0, 0]), (0, [0, 0]), (0, [1, 1]), (1, [1, 0]), (0, [2, 2]), (0, [0, 2]), (2, [2, 1])];
 
 /// The reduced word from the anchor to the free end, and the triangle in which the free end is.
 #[derive(Debug, Default)]
 pub(super) struct Word {
-    /// Each edge crossed, as seen from the triangle into which it leads; the last one's is the free end's.
+    /// Each edge crossed, as seen from the triangle into which it leads; the last one's is the free end's. Before the first
+    /// comes one that is none, behind the last what is left over.
     doors: Vec<Door>,
+    length: usize,
     triangle: u32,
     kept: usize,
 }
@@ -17,80 +25,68 @@ pub(super) struct Word {
 impl Word {
     /// The empty word of a trace that starts at `a`.
     pub(super) fn start(&mut self, mesh: &Mesh, a: TracePoint) {
-        self.doors.clear();
-        self.kept = 0;
-        self.triangle = mesh.start(a);
+        if self.doors.is_empty() {
+            self.doors.resize(64, Door::NONE);
+        }
+        (self.length, self.kept, self.triangle) = (0, 0, mesh.start(a));
     }
 
     /// The edges crossed, as seen from the triangles into which they lead.
     pub(super) fn doors(&self) -> &[Door] {
-        &self.doors
+        &self.doors[1..=self.length]
     }
 
     /// How many of the first doors have stayed since this was asked last.
     pub(super) fn take_kept(&mut self) -> usize {
-        std::mem::replace(&mut self.kept, self.doors.len())
+        std::mem::replace(&mut self.kept, self.length)
     }
 
-    /// Follows the free end from point `i - 1` of `trace`, where it is, to point `i`. Says whether the word may have
-    /// changed.
+    /// Follows the free end from point `i - 1` of `trace`, where it is, to point `i`. Says whether it has left its triangle.
     #[inline]
     pub(super) fn follow(&mut self, mesh: &Mesh, trace: &SettledTrace, i: usize) -> bool {
-        // Where the point lies strictly inside a triangle its hair does not matter.
-        let stays = mesh.triangle(self.triangle).surely_holds(trace.points()[i]);
-        if !stays {
-            self.leave(mesh, trace.point(i - 1), trace.point(i));
-        }
-        !stays
+        // Where the point lies strictly on one side of an edge its hair does not matter.
+        let behind = mesh.triangle(self.triangle).behind(trace.points()[i]);
+        behind != 0 && self.leave(mesh, behind, trace.point(i - 1), trace.point(i))
     }
 
-    /// Follows the leg from `a0`, in the current triangle, to `a1`.
-    fn leave(&mut self, mesh: &Mesh, a0: TracePoint, a1: TracePoint) {
-        // A leg that goes on leaves through the edge behind which its goal lies. Behind two edges, it passes the corner
-        // between them on one side or the other.
-        let first = |corner: usize, before: usize| {
-            let at = mesh.corner(self.triangle, corner).1;
-            if orient_step(a0, a1, at) >= 0.0 { before } else { corner }
-        };
-        let exit = match [0, 1, 2].map(|edge| mesh.is_inside(self.triangle, edge, a1)) {
-            [true, true, true] => return,
-            [false, true, true] => 0,
-            [true, false, true] => 1,
-            [true, true, false] => 2,
-            [false, false, _] => first(1, 0),
-            [true, false, false] => first(2, 1),
-            [false, true, false] => first(0, 2),
-        };
-        let mut exit = exit;
-        while let Some(next) = self.pass(mesh, exit, a0, a1) {
-            exit = next;
-        }
-    }
-
-    /// Goes through an edge of the current triangle, and finds the edge of the next one through which the leg leaves it
-    /// again, if it does. It never leaves through the edge by which it came.
-    #[inline]
-    fn pass(&mut self, mesh: &Mesh, exit: usize, a0: TracePoint, a1: TracePoint) -> Option<usize> {
-        let beyond = mesh.triangle(self.triangle).beyond[exit];
-        assert!(beyond != Door::NONE, "the frame holds all points");
-        if self.doors.last() == Some(&Door::new(self.triangle, exit)) {
-            self.doors.pop();
-            self.kept = self.kept.min(self.doors.len());
-        } else {
-            self.doors.push(beyond);
-        }
-        self.triangle = beyond.triangle();
-        let right = NEXT[beyond.edge()];
-        let left = NEXT[right];
-        match (mesh.is_inside(self.triangle, right, a1), mesh.is_inside(self.triangle, left, a1)) {
-            (true, true) => None,
-            (false, true) => Some(right),
-            (true, false) => Some(left),
-            // The corner between the two has the number of the edge that starts there.
-            (false, false) => {
-                let apex = mesh.triangle(self.triangle).corners[left];
-                Some(if orient_step(a0, a1, apex) >= 0.0 { right } else { left })
+    /// Follows the leg from `a0`, in the current triangle, to `a1`, which lies behind these edges or close to them.
+    fn leave(&mut self, mesh: &Mesh, mut behind: usize, a0: TracePoint, a1: TracePoint) -> bool {
+        if behind & DOUBT != 0 {
+            behind = (0..3).map(|edge| usize::from(!mesh.is_inside(self.triangle, edge, a1)) << edge).sum();
+            if behind == 0 {
+                return false;
             }
         }
+        let (corner, exits) = EXITS[behind];
+        let is_left = |triangle, corner: usize| orient_step(a0, a1, mesh.triangle(triangle).corners[corner]) >= 0.0;
+        let mut entry = self.pass(mesh, exits[usize::from(is_left(self.triangle, corner))]);
+        loop {
+            // The leg's line leaves a triangle through one of the two edges by which it did not come: the one that ends at
+            // the corner between them when that lies on its left, else the one that starts there.
+            let ends = NEXT[entry];
+            let starts = NEXT[ends];
+            let exit = [starts, ends][usize::from(is_left(self.triangle, starts))];
+            if mesh.is_inside(self.triangle, exit, a1) {
+                return true;
+            }
+            entry = self.pass(mesh, exit);
+        }
+    }
+
+    /// Goes through an edge of the current triangle. Returns which edge of the next it is.
+    #[inline]
+    fn pass(&mut self, mesh: &Mesh, exit: usize) -> usize {
+        let beyond = mesh.triangle(self.triangle).beyond[exit];
+        assert!(beyond != Door::NONE, "the frame holds all points");
+        let is_back = self.doors[self.length] == Door::new(self.triangle, exit);
+        if self.length + 1 == self.doors.len() {
+            self.doors.resize(2 * self.doors.len(), Door::NONE);
+        }
+        // Written down in either case: whether the leg goes back is another thing that cannot be guessed.
+        self.doors[self.length + 1] = beyond;
+        self.length = if is_back { self.length - 1 } else { self.length + 1 };
+        self.kept = self.kept.min(self.length);
+        self.triangle = beyond.triangle();
+        beyond.edge()
     }
 }
