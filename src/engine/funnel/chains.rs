@@ -29,6 +29,13 @@ pub(super) struct Node {
     pub stamp: u64,
 }
 
+/// A corner in the funnel's row: its node, and where it stands, which is asked for most.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    at: DVec2,
+    node: u32,
+}
+
 /// What a door changed.
 #[derive(Debug, Clone, Copy)]
 struct Undo {
@@ -37,7 +44,7 @@ struct Undo {
     apex: i32,
     /// The place of the row that was overwritten, and what was there.
     place: i32,
-    node: u32,
+    corner: Corner,
     /// The number of nodes.
     nodes: u32,
 }
@@ -46,8 +53,8 @@ struct Undo {
 #[derive(Debug, Default)]
 pub(super) struct Chains {
     nodes: Vec<Node>,
-    /// The row's nodes; place i is at index `middle + i`.
-    row: Vec<u32>,
+    /// The row; place i is at index `middle + i`.
+    row: Vec<Corner>,
     middle: i32,
     /// The places of the left end, the right end and the apex.
     low: i32,
@@ -67,11 +74,12 @@ impl Chains {
         self.nodes.clear();
         self.nodes.push(root);
         self.undo.clear();
+        let corner = Corner { at: anchor, node: 0 };
         if self.row.is_empty() {
-            (self.row, self.middle) = (vec![0; 64], 32);
+            (self.row, self.middle) = (vec![corner; 64], 32);
         }
         (self.low, self.high, self.apex, self.tip, self.stamp) = (0, 0, 0, 0, 0);
-        self.row[self.middle as usize] = 0;
+        self.row[self.middle as usize] = corner;
     }
 
     #[inline]
@@ -84,7 +92,7 @@ impl Chains {
     pub(super) fn follow(&mut self, mesh: &Mesh, doors: &[Door], kept: usize) {
         if let Some(&first) = self.undo.get(kept) {
             for undo in self.undo.drain(kept..).rev() {
-                self.row[(self.middle + undo.place) as usize] = undo.node;
+                self.row[(self.middle + undo.place) as usize] = undo.corner;
             }
             (self.low, self.high, self.apex) = (first.low, first.high, first.apex);
             self.nodes.truncate(first.nodes as usize);
@@ -105,36 +113,43 @@ impl Chains {
             None => {
                 self.narrow(Side::Left, left);
                 self.narrow(Side::Right, right);
-                (0, 0)
+                (0, self.corner(0))
             }
         };
-        self.undo.push(Undo { low, high, apex, place: place.0, node: place.1, nodes });
+        self.undo.push(Undo { low, high, apex, place: place.0, corner: place.1, nodes });
     }
 
     /// Moves one end of the funnel to `vertex`, which stands at `at`. Returns the place overwritten and what was there.
-    fn narrow(&mut self, side: Side, (vertex, at): (u32, DVec2)) -> (i32, u32) {
+    fn narrow(&mut self, side: Side, (vertex, at): (u32, DVec2)) -> (i32, Corner) {
         let from = match side {
             Side::Left => self.sector(at, self.low),
             Side::Right => self.sector(at, self.high),
         };
         // A vertex on which the anchor stands is no corner: the path to it ends at the anchor.
         let place = match side {
-            _ if self.at(from) == at => from,
+            _ if self.corner(from).at == at => from,
             Side::Left => from - 1,
             Side::Right => from + 1,
         };
-        let node = self.row[(self.middle + from) as usize];
-        let there = self.row[(self.middle + place) as usize];
+        let (corner, there) = (self.corner(from), self.corner(place));
         match side {
             Side::Left => (self.low, self.apex) = (place, self.apex.max(from)),
             Side::Right => (self.high, self.apex) = (place, self.apex.min(from)),
         }
         if place != from {
-            self.row[(self.middle + place) as usize] = self.nodes.len() as u32;
-            let prior = self.nodes[node as usize];
+            self.row[(self.middle + place) as usize] = Corner { at, node: self.nodes.len() as u32 };
+            let prior = *self.node(corner.node);
             let length = prior.length + prior.at.distance(at);
             self.stamp += 1;
-            self.nodes.push(Node { at, prior: node, depth: prior.depth + 1, vertex, side, length, stamp: self.stamp });
+            self.nodes.push(Node {
+                at,
+                prior: corner.node,
+                depth: prior.depth + 1,
+                vertex,
+                side,
+                length,
+                stamp: self.stamp,
+            });
             self.widen();
         }
         (place, there)
@@ -144,27 +159,28 @@ impl Chains {
     fn widen(&mut self) {
         let size = self.row.len();
         if self.middle + self.low == 0 || (self.middle + self.high) as usize + 1 == size {
-            let old = std::mem::replace(&mut self.row, vec![0; 3 * size]);
+            let old = std::mem::take(&mut self.row);
+            self.row = vec![old[0]; 3 * size];
             self.row[size..2 * size].copy_from_slice(&old);
             self.middle += size as i32;
         }
     }
 
-    /// Where the place `i` of the row is.
+    /// What is at place `i` of the row.
     #[inline]
-    fn at(&self, i: i32) -> DVec2 {
-        self.nodes[self.row[(self.middle + i) as usize] as usize].at
+    fn corner(&self, i: i32) -> Corner {
+        self.row[(self.middle + i) as usize]
     }
 
     /// The last corner of the shortest path to `a`, which is in the triangle behind the last door, or the anchor. A corner
     /// on which `a` stands is none. O(log corners between the last tip in the row and this one).
     pub(super) fn tip(&mut self, a: DVec2) -> u32 {
-        let apex = self.row[(self.middle + self.apex) as usize];
-        if self.nodes[apex as usize].at == a {
-            return self.nodes[apex as usize].prior;
+        let apex = self.corner(self.apex);
+        if apex.at == a {
+            return self.node(apex.node).prior;
         }
         self.tip = self.sector(a, self.tip);
-        self.row[(self.middle + self.tip) as usize]
+        self.corner(self.tip).node
     }
 
     /// The place from which the path goes straight to `p`, which lies behind the last door; searched for from the place
@@ -209,7 +225,7 @@ impl Chains {
     /// it counts as on the apex's side: the path passes the edge's far end straight.
     #[inline]
     fn is_left(&self, p: DVec2, i: i32) -> bool {
-        let side = orient(self.at(i), self.at(i + 1), p);
+        let side = orient(self.corner(i).at, self.corner(i + 1).at, p);
         // Left of the apex, the edge as seen from the anchor goes the other way.
         if i < self.apex { side < 0.0 } else { side >= 0.0 }
     }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use spade::handles::{DirectedEdgeHandle, FaceHandle, InnerTag};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-use super::triangle::{Door, Triangle};
+use super::triangle::{Door, NEXT, Triangle};
 use crate::engine::EngineError;
 use crate::geometry::{TracePoint, left_of};
 use crate::scene::Model;
@@ -62,23 +62,20 @@ impl Mesh {
         (self.names[triangle as usize][corner], self.triangles[triangle as usize].corners[corner])
     }
 
-    /// Whether `a` lies on the inner side of an edge of a triangle. A point on an edge belongs to the triangle left of the
+    /// The edges of a triangle behind which `a` lies, edge i as bit i. A point on an edge belongs to the triangle left of the
     /// edge as seen from its lower vertex to its higher, so every point that is no vertex is in one triangle only.
-    #[inline]
-    pub(super) fn is_inside(&self, triangle: u32, edge: usize, a: TracePoint) -> bool {
-        let side = self.triangles[triangle as usize].side(edge, a.at);
-        if side != 0.0 { side > 0.0 } else { self.is_inside_on_line(triangle, edge, a) }
-    }
-
     #[cold]
-    fn is_inside_on_line(&self, triangle: u32, edge: usize, a: TracePoint) -> bool {
-        let ((u, p), (v, q)) = (self.corner(triangle, edge), self.corner(triangle, (edge + 1) % 3));
-        if u < v { left_of(p, q, a) } else { !left_of(q, p, a) }
+    pub(super) fn behind(&self, triangle: u32, a: TracePoint) -> usize {
+        let is_inside = |edge| {
+            let ((u, p), (v, q)) = (self.corner(triangle, edge), self.corner(triangle, NEXT[edge]));
+            if u < v { left_of(p, q, a) } else { !left_of(q, p, a) }
+        };
+        (0..3).map(|edge| usize::from(!is_inside(edge)) << edge).sum()
     }
 
     /// The triangle that holds `a`, a hair off the anchor or on it.
     pub(super) fn start(&self, a: TracePoint) -> u32 {
-        let holds = |&&t: &&u32| (0..3).all(|edge| self.is_inside(t, edge, a));
+        let holds = |&&t: &&u32| self.behind(t, a) == 0;
         *self.starts.iter().find(holds).expect("the frame holds all points")
     }
 }

@@ -42,7 +42,7 @@ impl Word {
     }
 
     /// Follows the free end from point `i - 1` of `trace`, where it is, to point `i`. Says whether it has left its triangle.
-    #[inline]
+    #[inline(always)]
     pub(super) fn follow(&mut self, mesh: &Mesh, trace: &SettledTrace, i: usize) -> bool {
         // Where the point lies strictly on one side of an edge its hair does not matter.
         let behind = mesh.triangle(self.triangle).behind(trace.points()[i]);
@@ -50,31 +50,37 @@ impl Word {
     }
 
     /// Follows the leg from `a0`, in the current triangle, to `a1`, which lies behind these edges or close to them.
-    fn leave(&mut self, mesh: &Mesh, mut behind: usize, a0: TracePoint, a1: TracePoint) -> bool {
-        if behind & DOUBT != 0 {
-            behind = (0..3).map(|edge| usize::from(!mesh.is_inside(self.triangle, edge, a1)) << edge).sum();
-            if behind == 0 {
-                return false;
-            }
+    fn leave(&mut self, mesh: &Mesh, behind: usize, a0: TracePoint, a1: TracePoint) -> bool {
+        let behind = self.undoubted(mesh, behind, a1);
+        if behind == 0 {
+            return false;
         }
-        let (corner, exits) = EXITS[behind];
         let is_left = |triangle, corner: usize| orient_step(a0, a1, mesh.triangle(triangle).corners[corner]) >= 0.0;
+        let (corner, exits) = EXITS[behind];
         let mut entry = self.pass(mesh, exits[usize::from(is_left(self.triangle, corner))]);
         loop {
             // The leg's line leaves a triangle through one of the two edges by which it did not come: the one that ends at
-            // the corner between them when that lies on its left, else the one that starts there.
+            // the corner between them when that lies on its left, else the one that starts there. Asked before it is known
+            // whether the leg goes so far, since a processor finds out both at the same time.
             let ends = NEXT[entry];
             let starts = NEXT[ends];
             let exit = [starts, ends][usize::from(is_left(self.triangle, starts))];
-            if mesh.is_inside(self.triangle, exit, a1) {
+            let behind = mesh.triangle(self.triangle).behind(a1.at);
+            if self.undoubted(mesh, behind, a1) == 0 {
                 return true;
             }
             entry = self.pass(mesh, exit);
         }
     }
 
+    /// The edges of the current triangle behind which `a` lies, exactly, given what rounded numbers say.
+    #[inline(always)]
+    fn undoubted(&self, mesh: &Mesh, behind: usize, a: TracePoint) -> usize {
+        if behind & DOUBT == 0 { behind } else { mesh.behind(self.triangle, a) }
+    }
+
     /// Goes through an edge of the current triangle. Returns which edge of the next it is.
-    #[inline]
+    #[inline(always)]
     fn pass(&mut self, mesh: &Mesh, exit: usize) -> usize {
         let beyond = mesh.triangle(self.triangle).beyond[exit];
         assert!(beyond != Door::NONE, "the frame holds all points");
