@@ -79,7 +79,7 @@ impl Triangle {
         };
         let sides = [side(p, q), side(q, r), side(r, p)];
         let doubt = sides[0].1 | sides[1].1 | sides[2].1;
-        sides[0].0 | sides[1].0 << 1 | sides[2].0 << 2 | doubt * DOUBT
+        sides[0].0 | (sides[1].0 << 1) | (sides[2].0 << 2) | (doubt * DOUBT)
     }
 }
 
@@ -92,8 +92,8 @@ mod tests {
         let p = |x: f64, y: f64| DVec2::new(x, y);
         let triangle = Triangle { corners: [p(0.1, 0.1), p(0.7, 0.3), p(0.2, 0.9)], beyond: [Door::NONE; 3] };
         assert_eq!([p(0.3, 0.4), p(0.5, 0.1), p(0.0, 0.0)].map(|a| triangle.behind(a)), [0b000, 0b001, 0b101]);
-        for i in 0..3 {
-            let (u, v) = (triangle.corners[i], triangle.corners[NEXT[i]]);
+        for (i, next) in NEXT.into_iter().enumerate() {
+            let (u, v) = (triangle.corners[i], triangle.corners[next]);
             assert!(triangle.touches(u) && triangle.behind(u) & DOUBT != 0);
             for k in 0..64 {
                 let a = u.lerp(v, f64::from(k) / 64.0);
