@@ -10,7 +10,7 @@
 // How many vertices a page holds, two to a vec4.
 const PAGE: u32 = 8190u;
 
-// A swept triangle, as three half-planes in the frame's unit (xy: the unit normal, pointing inwards; z: the offset): p is
+// A swept triangle, as three half-planes in the frame's unit (xy: the normal, pointing inwards; z: the offset): p is
 // inside where dot(normal, p) + offset >= 0. And the places, counted over all pages, of the vertices to be tried.
 struct Query {
     right: vec3<f32>,

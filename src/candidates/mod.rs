@@ -16,8 +16,8 @@ pub use frame::Frame;
 pub use list::List;
 pub use lists::{LISTS_BUDGET, Lists};
 pub use query::Query;
-pub use simd::{BLOCK, Simd};
-pub use window::{Line, Slopes, Window};
+pub use simd::{LEGS, Simd};
+pub use window::{Line, Slopes, Window, Wrapping};
 
 /// How many vertices a query can name before it overflows.
 ///

@@ -5,32 +5,32 @@ use glam::DVec2;
 
 use super::Frame;
 
-/// By how much a swept triangle is grown, in the frame's unit: 2^-19, about 1.9e-6.
+/// By how much a swept triangle is grown, in the frame's unit: 2^-18, about 3.8e-6.
 ///
 /// A vertex inside the exact triangle passes the f32 test dot(normal, p) + offset >= 0 because all errors together stay
-/// below the margin. With |p.x|, |p.y| <= 1 and a unit normal, in the frame's unit:
+/// below the margin. With |p.x|, |p.y| <= 1 and a normal of length 1 to 1.81 (see [`Query::wedge`]), in the frame's unit:
 ///
 /// | error | bound |
 /// |---|---|
-/// | p rounded to f32 | sqrt(2) 2^-25 |
-/// | the normal rounded to f32 | 2 x 2^-25 |
-/// | the offset, at most 2 in magnitude, rounded to f32 | 2^-24 |
-/// | two products of at most 1, each to one of the two nearest f32 (WGSL names no rounding mode) or fused | 2 x 2^-24 |
-/// | two sums of at most 3.5 in magnitude, likewise, in any order | 2 x 2^-22 |
+/// | p rounded to f32 | 1.81 sqrt(2) 2^-25 |
+/// | the normal rounded to f32 | 2 x 2^-24 |
+/// | the offset, at most 4 in magnitude, rounded to f32 | 2^-23 |
+/// | two products of at most 1.81, each to one of the two nearest f32 (WGSL names no rounding mode) or fused | 2 x 2^-23 |
+/// | two sums of at most 6.6 in magnitude, likewise, in any order | 2 x 2^-21 |
 /// | products and sums flushed to zero | 5 x 2^-126 |
 /// | the pivot, the directions and the normals computed in f64, for ways of up to 2^20 | below 2^-30 |
 ///
-/// which is 7.6e-7 in all. Fusing and reassociating change which sums round, not how many.
-const MARGIN: f64 = 1.0 / (1 << 19) as f64;
+/// which is 1.6e-6 in all. Fusing and reassociating change which sums round, not how many.
+const MARGIN: f64 = 1.0 / (1 << 18) as f64;
 
 /// The longest way from the pivot, in the frame's unit, for which a leg that spreads wide gets a triangle: 2^20. The far
 /// side's offset, and even the way in which the triangle turns, are rounded in proportion to the ways.
 const LONGEST: f64 = (1 << 20) as f64;
 
-/// The largest offset: beyond it a half-plane holds every vertex (|dot(normal, p)| <= sqrt(2)), or none.
-const FAR: f64 = 2.0;
+/// The largest offset: beyond it a half-plane holds every vertex (|dot(normal, p)| <= 1.81 sqrt(2)), or none.
+const FAR: f64 = 4.0;
 
-/// A swept triangle; the shader's `Query`. Each half-plane is its inward unit normal and its offset, in the frame's unit:
+/// A swept triangle; the shader's `Query`. Each half-plane is its inward normal and its offset, in the frame's unit:
 /// `p` is inside where dot(normal, p) + offset >= 0 in all three.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 #[repr(C)]
@@ -50,16 +50,22 @@ pub struct Query {
 }
 
 impl Query {
-    /// The triangle with its apex at `pivot` between the directions `right` and `left`, which are less than a half turn
-    /// apart, cut off behind all that is no further than `reach` from the pivot.
-    pub fn wedge(frame: &Frame, pivot: DVec2, right: DVec2, left: DVec2, reach: f64) -> Query {
+    /// The triangle with its apex at `pivot` between the slopes `low` and `high`, both at most 1.5 in magnitude, off `axis`, cut
+    /// off behind all that is no further than `reach` from the pivot.
+    ///
+    /// The normals are left as long as they come, at most sqrt(1 + 1.5^2) = 1.81: that saves most of the square roots.
+    #[inline]
+    pub fn wedge(frame: &Frame, pivot: DVec2, axis: DVec2, (low, high): (f64, f64), reach: f64) -> Query {
         let origin = frame.place(pivot);
-        let (right, left) = (unit(right), unit(left));
-        let ahead = unit(right + left);
+        let axis = unit(axis);
+        let at = |slope: f64| axis + slope * axis.perp();
+        let middle = (low + high) / 2.0;
+        // Its length is at most 1 + middle^2 / 2.
+        let ahead = at(middle);
         Query {
-            right: half_plane(right.perp(), origin, 0.0),
-            left: half_plane(-left.perp(), origin, 0.0),
-            far: half_plane(-ahead, origin, frame.scaled(reach)),
+            right: half_plane(at(low).perp(), origin, 0.0),
+            left: half_plane(-at(high).perp(), origin, 0.0),
+            far: half_plane(-ahead, origin, frame.scaled(reach) * (1.0 + middle * middle / 2.0)),
             ..Query::default()
         }
     }
@@ -109,6 +115,7 @@ impl Query {
 }
 
 /// The half-plane dot(normal, p - origin) + offset >= 0, grown by the margin.
+#[inline]
 fn half_plane(normal: DVec2, origin: DVec2, offset: f64) -> [f32; 3] {
     let offset = (offset - normal.dot(origin) + MARGIN).clamp(-FAR, FAR);
     [normal.x as f32, normal.y as f32, offset as f32]

@@ -8,13 +8,20 @@
 use glam::DVec2;
 use pulp::{Arch, WithSimd};
 
+use super::window::Wrapping;
 use super::{List, Query, Slopes};
 
 /// How many points the loops over points take at once.
 pub const BLOCK: usize = 8;
 
+/// How many points fit into the bits of a mask.
+const MASK: usize = 64;
+
+/// How many legs a mask holds: those between its points.
+pub const LEGS: usize = MASK - 1;
+
 /// How many vertices the loops over vertices take at once.
-pub(super) const VERTICES: usize = 32;
+pub(super) const VERTICES: usize = 16;
 
 /// The instruction set to use.
 #[derive(Debug, Clone, Copy)]
@@ -63,15 +70,10 @@ macro_rules! wide {
 }
 
 wide! {
-    /// Writes the slopes and squared distances of `points` from entry 1 of `slopes` on, and returns how many of them, from
-    /// the first, lie before the pivot with a slope of at most `steepest`.
-    slopes as SlopesOp(o: DVec2, axis: DVec2, steepest: f64, points: &'a [DVec2], slopes: &'a mut Slopes) -> usize
-        = fill_slopes
-}
-
-wide! {
-    /// The least and the greatest of `values`, which are not empty.
-    extent as ExtentOp(values: &'a [f64]) -> (f64, f64) = least_and_greatest
+    /// Writes the slopes and squared distances of `points` from entry 1 of `slopes` on, as long as they lie before the pivot
+    /// with a slope of at most `steepest`; entry 0 is there. Returns how many they are and the extent of all from entry 0 on.
+    fold as FoldOp(o: DVec2, axis: DVec2, steepest: f64, points: &'a [DVec2], slopes: &'a mut Slopes) -> (usize, Extent)
+        = fold_points
 }
 
 wide! {
@@ -80,13 +82,9 @@ wide! {
 }
 
 wide! {
-    /// How many of `values`, from the first on, are greater than `bound`.
-    above as AboveOp(values: &'a [f64], bound: f64) -> usize = run_above
-}
-
-wide! {
-    /// How many of `values`, from the first on, are less than `bound`.
-    below as BelowOp(values: &'a [f64], bound: f64) -> usize = run_below
+    /// For each line the legs, of the `legs` from `leg` on but at most [`LEGS`], on which something can happen: as bits,
+    /// lowest first. Bits of further legs mean nothing.
+    meet as MeetOp(lines: &'a mut [Wrapping], slopes: &'a Slopes, leg: usize, legs: usize) -> () = meet_lines
 }
 
 wide! {
@@ -94,24 +92,43 @@ wide! {
     sweep as SweepOp(list: &'a List, query: &'a Query, found: &'a mut Vec<u32>) -> () = sweep_list
 }
 
+/// The least and the greatest slope and the greatest squared distance of some points.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Extent {
+    pub low: f64,
+    pub high: f64,
+    pub squared: f64,
+}
+
 #[inline(always)]
-fn fill_slopes(o: DVec2, axis: DVec2, steepest: f64, points: &[DVec2], slopes: &mut Slopes) -> usize {
-    let (slope, squared) = (&mut slopes.slope[1..], &mut slopes.squared[1..]);
-    let (slope, _) = slope.as_chunks_mut::<BLOCK>();
-    let (squared, _) = squared.as_chunks_mut::<BLOCK>();
-    let (blocks, rest) = points.as_chunks::<BLOCK>();
-    for (i, block) in blocks.iter().enumerate() {
-        let good = slope_block(o, axis, steepest, block, &mut slope[i], &mut squared[i]);
+fn fold_points(o: DVec2, axis: DVec2, steepest: f64, points: &[DVec2], slopes: &mut Slopes) -> (usize, Extent) {
+    let (mut low, mut high) = ([slopes.slope[0]; BLOCK], [slopes.slope[0]; BLOCK]);
+    let mut far = [slopes.squared[0]; BLOCK];
+    let (slope, _) = slopes.slope[1..].as_chunks_mut::<BLOCK>();
+    let (squared, _) = slopes.squared[1..].as_chunks_mut::<BLOCK>();
+    let mut legs = 0;
+    for (i, points) in points.chunks(BLOCK).enumerate() {
+        let (slope, squared) = (&mut slope[i], &mut squared[i]);
+        let mut block = [points[points.len() - 1]; BLOCK];
+        block[..points.len()].copy_from_slice(points);
+        let good = slope_block(o, axis, steepest, &block, slope, squared).min(points.len());
+        legs += good;
         if good < BLOCK {
-            return i * BLOCK + good;
+            // A last good point takes the places of those that are not.
+            for j in 0..good {
+                (low[j], high[j]) = (lesser(low[j], slope[j]), greater(high[j], slope[j]));
+                far[j] = greater(far[j], squared[j]);
+            }
+            break;
+        }
+        for j in 0..BLOCK {
+            (low[j], high[j]) = (lesser(low[j], slope[j]), greater(high[j], slope[j]));
+            far[j] = greater(far[j], squared[j]);
         }
     }
-    let done = blocks.len();
-    let Some(&last) = rest.last() else { return done * BLOCK };
-    let mut block = [last; BLOCK];
-    block[..rest.len()].copy_from_slice(rest);
-    let good = slope_block(o, axis, steepest, &block, &mut slope[done], &mut squared[done]);
-    done * BLOCK + good.min(rest.len())
+    let low = low.into_iter().fold(low[0], lesser);
+    let high = high.into_iter().fold(high[0], greater);
+    (legs, Extent { low, high, squared: far.into_iter().fold(far[0], greater) })
 }
 
 /// One block of points: how many of them, from the first, are good.
@@ -137,19 +154,6 @@ fn slope_block(
 }
 
 #[inline(always)]
-fn least_and_greatest(values: &[f64]) -> (f64, f64) {
-    let (mut low, mut high) = ([values[0]; BLOCK], [values[0]; BLOCK]);
-    let (blocks, rest) = values.as_chunks::<BLOCK>();
-    for block in blocks {
-        for i in 0..BLOCK {
-            (low[i], high[i]) = (lesser(low[i], block[i]), greater(high[i], block[i]));
-        }
-    }
-    let (low, high) = (low.into_iter().fold(low[0], lesser), high.into_iter().fold(high[0], greater));
-    rest.iter().fold((low, high), |(low, high), &v| (lesser(low, v), greater(high, v)))
-}
-
-#[inline(always)]
 fn greatest_of(values: &[f64]) -> f64 {
     let mut high = [values[0]; BLOCK];
     let (blocks, rest) = values.as_chunks::<BLOCK>();
@@ -172,29 +176,27 @@ fn greater(a: f64, b: f64) -> f64 {
 }
 
 #[inline(always)]
-fn run_above(values: &[f64], bound: f64) -> usize {
-    run(values, |v| v > bound)
-}
-
-#[inline(always)]
-fn run_below(values: &[f64], bound: f64) -> usize {
-    run(values, |v| v < bound)
-}
-
-#[inline(always)]
-fn run(values: &[f64], holds: impl Fn(f64) -> bool) -> usize {
-    let (blocks, rest) = values.as_chunks::<BLOCK>();
-    for (i, block) in blocks.iter().enumerate() {
-        let mut failed = [0u64; BLOCK];
-        for (j, &value) in block.iter().enumerate() {
-            failed[j] = u64::from(!holds(value)) << j;
+fn meet_lines(lines: &mut [Wrapping], slopes: &Slopes, leg: usize, legs: usize) {
+    let points = (legs + 1).min(MASK).next_multiple_of(BLOCK);
+    let (slope, squared) = (&slopes.slope[leg..leg + points], &slopes.squared[leg..leg + points]);
+    let ((slope, _), (squared, _)) = (slope.as_chunks::<BLOCK>(), squared.as_chunks::<BLOCK>());
+    for Wrapping { line, met, .. } in lines {
+        // Bit i: point i lies surely above the line, surely below it, surely nearer than what the line begins at.
+        let (mut above, mut below, mut near) = (0u64, 0u64, 0u64);
+        for (i, (slope, squared)) in slope.iter().zip(squared).enumerate() {
+            let mut bits = [0u64; BLOCK];
+            for j in 0..BLOCK {
+                let at = |bit: bool, place: usize| u64::from(bit) << (place * BLOCK + j);
+                bits[j] = at(slope[j] > line.high, 0) | at(slope[j] < line.low, 1) | at(squared[j] < line.beyond, 2);
+            }
+            let bits = bits.into_iter().fold(0, |all, one| all | one);
+            let take = |place: usize| u64::from((bits >> (place * BLOCK)) as u8) << (i * BLOCK);
+            (above, below, near) = (above | take(0), below | take(1), near | take(2));
         }
-        let failed = failed.into_iter().fold(0, |all, one| all | one);
-        if failed != 0 {
-            return i * BLOCK + failed.trailing_zeros() as usize;
-        }
+        // On a leg with both ends above, both below or both near, nothing happens.
+        let quiet = |ends: u64| ends & (ends >> 1);
+        *met = !(quiet(above) | quiet(below) | quiet(near));
     }
-    blocks.len() * BLOCK + rest.iter().take_while(|&&value| holds(value)).count()
 }
 
 #[inline(always)]

@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::simd::{BLOCK, Simd};
+use super::simd::{BLOCK, Extent, Simd};
 use super::{Frame, Query};
 
 /// The largest slope in a window: beyond it (56 degrees from the axis) the next window begins. The wedge stays well below
@@ -76,45 +76,35 @@ impl Window {
         if axis == DVec2::ZERO {
             return None;
         }
-        let size = points.len().next_multiple_of(BLOCK) + BLOCK;
+        let size = points.len() + 2 * BLOCK;
         if slopes.slope.len() < size {
             slopes.slope.resize(size, 0.0);
             slopes.squared.resize(size, 0.0);
         }
         (slopes.slope[0], slopes.squared[0]) = (0.0, first.length_squared());
-        let mut window = Window { legs: 0, axis, low: 0.0, high: 0.0, squared: slopes.squared[0] };
-        window.legs = simd.slopes(pivot, axis, STEEPEST, &points[1..], slopes);
-        if window.legs == 0 {
-            return None;
-        }
-        (window.low, window.high) = simd.extent(&slopes.slope[..=window.legs]);
-        window.squared = simd.greatest(&slopes.squared[..=window.legs]);
-        Some(window)
-    }
-
-    /// The directions that bound it, right and left.
-    fn bounds(&self) -> (DVec2, DVec2) {
-        (self.axis + self.low * self.axis.perp(), self.axis + self.high * self.axis.perp())
+        let (legs, Extent { low, high, squared }) = simd.fold(pivot, axis, STEEPEST, &points[1..], slopes);
+        (legs > 0).then_some(Window { legs, axis, low, high, squared })
     }
 
     /// The triangle that holds all that the rope's last leg sweeps.
     pub fn query(&self, frame: &Frame, pivot: DVec2) -> Query {
-        let (right, left) = self.bounds();
-        Query::wedge(frame, pivot, right, left, self.squared.sqrt())
+        Query::wedge(frame, pivot, self.axis, (self.low, self.high), self.squared.sqrt())
     }
 
-    /// The line through the pivot along which the rope turns back, if it can pass through the window: that from the prior
-    /// at `-way` from the pivot.
+    /// The line through the pivot along which the rope turns back, if it can pass through the window; `way` leads to the
+    /// pivot from the prior.
     pub fn unwrapping(&self, way: DVec2) -> Option<Line> {
         self.line(way, 0.0)
     }
 
     /// The line through the pivot and the vertex at `way` from it, if the free end can pass it beyond the vertex.
+    #[inline]
     pub fn wrapping(&self, way: DVec2) -> Option<Line> {
         let beyond = way.length_squared() * (1.0 - SURELY);
         if beyond > self.squared { None } else { self.line(way, beyond) }
     }
 
+    #[inline]
     fn line(&self, way: DVec2, beyond: f64) -> Option<Line> {
         let slope = self.axis.perp_dot(way) / self.axis.dot(way);
         // Not a number, for a way of no length, is kept: no slope is then certain.
@@ -127,36 +117,35 @@ impl Window {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line {
     /// Between which bounds its slope surely lies.
-    low: f64,
-    high: f64,
-    /// Nothing happens on legs whose ends are nearer to the pivot, squared.
-    beyond: f64,
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// Nothing happens on legs whose ends are both nearer to the pivot, squared.
+    pub(super) beyond: f64,
 }
 
-impl Line {
-    /// Whether something can happen on leg `leg`. On a first leg that starts on its way, the part before is left out.
+/// A line and the legs on which something can happen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wrapping {
+    /// The vertex round which the rope can be wrapped; for the unwrapping ray, the pivot.
+    pub vertex: u32,
+    /// The line that the free end must cross.
+    pub line: Line,
+    /// The legs, of the [`LEGS`](super::LEGS) from some leg on, on which something can happen, as bits, lowest first.
+    pub met: u64,
+}
+
+impl Wrapping {
+    /// A line of which it is not known yet where it can be met.
     #[inline]
-    pub fn meets(&self, slopes: &Slopes, leg: usize) -> bool {
-        let (a, b) = (slopes.slope[leg], slopes.slope[leg + 1]);
-        let (low, high) = if a < b { (a, b) } else { (b, a) };
-        let farthest = slopes.squared[leg].max(slopes.squared[leg + 1]);
-        // Bounds that are no numbers are met.
-        !(self.high < low || self.low > high || farthest < self.beyond)
+    pub fn new(vertex: u32, line: Line) -> Self {
+        Wrapping { vertex, line, met: 0 }
     }
 
-    /// The first leg from `leg` on, below `legs`, of which it is not certain that both its ends lie strictly on one side of
-    /// the line; `legs` if there is none.
+    /// Finds the legs, of the `legs` from `leg` on but at most [`LEGS`](super::LEGS), on which something can happen: all but
+    /// those of which it is certain that both ends lie strictly on one side of the line, or that both are nearer than its
+    /// vertex. On a first leg that starts on its way, the part before is left out. Bits of further legs mean nothing.
     #[inline]
-    pub fn first_met(&self, simd: Simd, slopes: &Slopes, leg: usize, legs: usize) -> usize {
-        let slopes = &slopes.slope[leg..=legs];
-        let first = slopes[0];
-        let run = if first > self.high {
-            simd.above(slopes, self.high)
-        } else if first < self.low {
-            simd.below(slopes, self.low)
-        } else {
-            1
-        };
-        leg + run - 1
+    pub fn meet(simd: Simd, lines: &mut [Wrapping], slopes: &Slopes, leg: usize, legs: usize) {
+        simd.meet(lines, slopes, leg, legs);
     }
 }

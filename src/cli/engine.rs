@@ -61,7 +61,7 @@ impl EngineArgs {
             })),
             (EngineName::Cpu, None) => Ok(self.cpu(model)),
             (EngineName::Reference, None) => Ok((Box::new(Reference::new(model)), one_thread())),
-            (EngineName::Funnel, None) => Ok((Box::new(Funnel::new(model)), one_thread())),
+            (EngineName::Funnel, None) => Ok((Box::new(Funnel::new(model)), threads())),
             (EngineName::Note, None) => Ok((Box::new(Note::new(model)), one_thread())),
         }
     }
@@ -77,17 +77,20 @@ impl EngineArgs {
     }
 
     fn cpu<'m>(&self, model: &'m Model) -> Opened<'m> {
-        let on = format!("{} threads", rayon::current_num_threads());
         let mut engine = Cpu::new(model).window(self.window());
         if self.keep_all {
             engine = engine.keep_all();
         }
-        (Box::new(engine), on)
+        (Box::new(engine), threads())
     }
 
     fn window(&self) -> usize {
         self.window.map_or(WINDOW, |w| w as usize)
     }
+}
+
+fn threads() -> String {
+    format!("{} threads", rayon::current_num_threads())
 }
 
 fn named(adapter: &str) -> AdapterChoice {

@@ -2,13 +2,13 @@
 //! are known.
 
 use super::walk::Walk;
-use crate::candidates::{Frame, Line, Query, ROOM, Simd, Slopes, Window};
+use crate::candidates::{Frame, LEGS, Line, Query, ROOM, Simd, Slopes, Window, Wrapping};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 /// How many legs the first window of a trace covers at most, and the first after an event.
-const FIRST_WINDOW: usize = 16;
+const FIRST_WINDOW: usize = 12;
 
 /// How far a trace has come, and the window that was asked for last.
 pub(super) struct Course {
@@ -19,13 +19,15 @@ pub(super) struct Course {
     window: Option<Window>,
     /// The point at which the window starts.
     first: usize,
-    /// The candidates that can be wrapped in the window.
+    /// The lines that can be met in the window: first that of the unwrapping ray, if it is one, then those of candidates.
     lines: Vec<Wrapping>,
+    /// How many of them are the unwrapping ray's.
+    unwrappings: usize,
 }
 
 impl Course {
     pub(super) fn new() -> Self {
-        Course { walk: Walk::new(), width: FIRST_WINDOW, window: None, first: 0, lines: Vec::new() }
+        Course { walk: Walk::new(), width: FIRST_WINDOW, window: None, first: 0, lines: Vec::new(), unwrappings: 0 }
     }
 
     /// Stands at the start of `trace`.
@@ -102,50 +104,34 @@ impl Course {
             self.walk.next(model, trace, candidates.iter().copied());
             return;
         };
-        let mut unwrapping = self.unwrapping(&window).map(|line| (line, 0));
-        let pivot = self.walk.rope.pivot();
-        self.lines.clear();
-        self.lines.extend(candidates.iter().filter_map(|&vertex| {
-            let line = window.wrapping(model.vertices()[vertex as usize] - pivot)?;
-            Some(Wrapping { vertex, line, met: 0 })
-        }));
-        // Where the rope already turned on the first leg, the slopes do not say what is left of it.
+        self.find_lines(model, &window, candidates);
+        // Where the rope already turned on the first leg, its slopes do not say what is left of it.
         let turned = self.walk.start_direction().is_some();
-        let first_met = |line: Line, leg| line.first_met(simd, slopes, leg, window.legs);
-        if !turned {
-            unwrapping.iter_mut().for_each(|(line, met)| *met = first_met(*line, 0));
-            self.lines.iter_mut().for_each(|w| w.met = first_met(w.line, 0));
-        }
-        // All legs before `leg` are over; up to point `looked` the rope has been measured.
-        let (mut leg, mut looked) = (0, 0);
-        loop {
-            if leg > 0 || !turned {
-                let met = unwrapping.iter().map(|(_, met)| *met).chain(self.lines.iter().map(|w| w.met));
-                leg = met.fold(window.legs, usize::min);
-            }
-            if leg == window.legs {
-                break;
-            }
-            let tried = self.lines.iter().filter(|w| w.line.meets(slopes, leg)).map(|w| w.vertex);
-            let happens = (turned && leg == 0)
-                || unwrapping.is_some_and(|(line, _)| line.meets(slopes, leg))
-                || tried.clone().next().is_some();
-            if happens {
+        // Up to point `looked` the rope has been measured.
+        let mut looked = 0;
+        for from in (0..window.legs).step_by(LEGS) {
+            let legs = LEGS.min(window.legs - from);
+            Wrapping::meet(simd, &mut self.lines, slopes, from, legs);
+            let mut met = self.lines.iter().fold(u64::from(turned && from == 0), |met, line| met | line.met);
+            met &= (1 << legs) - 1;
+            while met != 0 {
+                let bit = met & met.wrapping_neg();
+                let leg = from + bit.trailing_zeros() as usize;
+                met ^= bit;
                 if leg > looked {
                     self.walk.skip(trace, self.first + leg, || slopes.farthest(simd, looked + 1, leg));
                 }
-                if self.walk.next(model, trace, tried).is_some() {
+                let tried =
+                    self.lines[self.unwrappings..].iter().filter(|line| line.met & bit != 0 || turned && leg == 0);
+                if self.walk.next(model, trace, tried.map(|line| line.vertex)).is_some() {
                     self.width = FIRST_WINDOW.max(leg);
                     return;
                 }
                 looked = leg + 1;
             }
-            leg += 1;
-            unwrapping.iter_mut().filter(|u| u.1 < leg).for_each(|(line, met)| *met = first_met(*line, leg));
-            self.lines.iter_mut().filter(|w| w.met < leg).for_each(|w| w.met = first_met(w.line, leg));
         }
-        if leg > looked {
-            self.walk.skip(trace, self.first + leg, || slopes.farthest(simd, looked + 1, leg));
+        if window.legs > looked {
+            self.walk.skip(trace, self.first + window.legs, || slopes.farthest(simd, looked + 1, window.legs));
         }
         self.adapt(&window, candidates.len());
     }
@@ -175,6 +161,18 @@ impl Course {
         }
     }
 
+    /// Fills `lines` with the unwrapping ray's, if it can be met, and then the candidates'.
+    fn find_lines(&mut self, model: &Model, window: &Window, candidates: &[u32]) {
+        let pivot = self.walk.rope.pivot();
+        self.lines.clear();
+        self.lines.extend(self.unwrapping(window).map(|line| Wrapping::new(0, line)));
+        self.unwrappings = self.lines.len();
+        self.lines.extend(candidates.iter().filter_map(|&vertex| {
+            let line = window.wrapping(model.vertices()[vertex as usize] - pivot)?;
+            Some(Wrapping::new(vertex, line))
+        }));
+    }
+
     /// The line of the unwrapping ray, if it can pass through the window.
     fn unwrapping(&self, window: &Window) -> Option<Line> {
         let rope = &self.walk.rope;
@@ -183,13 +181,4 @@ impl Course {
         }
         window.unwrapping(rope.pivot() - rope.prior())
     }
-}
-
-/// A vertex that the rope can be wrapped round in a window.
-struct Wrapping {
-    vertex: u32,
-    /// The line that the free end must cross.
-    line: Line,
-    /// The next leg on which it may.
-    met: usize,
 }

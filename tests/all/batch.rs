@@ -61,6 +61,43 @@ fn one_engine_serves_batch_after_batch() {
     assert_eq!(run(&mut engine, &traces), truth);
 }
 
+/// Whatever thread a trace comes to, and after whatever other trace.
+#[test]
+fn the_funnel_of_a_trace_does_not_depend_on_the_others() {
+    let (model, traces) = example(Walker { step: 0.3, steps: 200, seed: 9 }, 60);
+    for mut engine in [Funnel::new(&model), Funnel::new(&model).final_only()] {
+        let alone: Vec<_> = traces.iter().map(|t| run(&mut engine, std::slice::from_ref(t)).remove(0)).collect();
+        assert!(alone.iter().any(|r| r.events.len() > 4), "nothing happened to compare");
+        let backwards: Vec<_> = traces.iter().rev().cloned().collect();
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert_eq!(pool.install(|| run(&mut engine, &traces)), alone, "{threads} threads");
+            let records = pool.install(|| run(&mut engine, &backwards));
+            assert!(records.iter().rev().eq(&alone), "{threads} threads, backwards");
+        }
+    }
+}
+
+/// The triangulation is kept from batch to batch unless a trace leads out of its frame.
+#[test]
+fn the_funnels_frame_grows_with_the_traces() {
+    let (model, traces) = example(Walker { step: 0.3, steps: 100, seed: 7 }, 10);
+    let out = |size: f64| {
+        let points = [[1.0, 0.1], [1.1, 1.0], [-1.0, 1.1], [-1.1, -1.0], [0.1, -1.1]];
+        let points = points.iter().map(|&p| model.anchor() + size * DVec2::from(p)).collect();
+        settle(&model, &Trace { id: 0, points })
+    };
+    let mut engine = Funnel::new(&model);
+    for batch in [&traces[..], &[out(1e2)], &[out(1e9)], &traces, &[out(1e3)]] {
+        let records = run(&mut engine, batch);
+        assert_eq!(records, run(&mut Funnel::new(&model), batch));
+        let [truth, found] = [run(&mut Reference::new(&model), batch), records].map(|records| {
+            records.into_iter().map(|r| (r.length, r.max_length, r.wraps, r.max_depth)).collect::<Vec<_>>()
+        });
+        assert_eq!(found, truth);
+    }
+}
+
 #[test]
 fn windows_of_any_bound_change_nothing() {
     let (model, traces) = example(Walker { step: 0.2, steps: 300, seed: 8 }, 12);
@@ -191,4 +228,28 @@ fn lists_that_do_not_fit_the_budget_are_made_again() {
     let tuning = Tuning { queries: 7, workgroup: 64 };
     let mut gpu = Gpu::with(software(), Lists::new(&model).budget(1 << 14), 0, tuning, SWEEP_WGSL).unwrap();
     assert_eq!(run(&mut gpu, &traces), run(&mut Reference::new(&model), &traces));
+}
+
+#[test]
+fn a_stopped_funnel_ends_early_and_one_that_is_not_counts_all_steps() {
+    let (model, traces) = example(Walker { step: 0.01, steps: 5000, seed: 1 }, 3);
+    for mut engine in [Funnel::new(&model), Funnel::new(&model).final_only()] {
+        let job = Job::new();
+        job.stop();
+        assert!(matches!(engine.evaluate(&traces, &job), Err(EngineError::Stopped)));
+        assert_eq!(job.steps(), 0);
+        let job = Job::new();
+        engine.evaluate(&traces, &job).unwrap();
+        assert_eq!(job.steps(), 15_000);
+    }
+}
+
+#[test]
+fn the_funnel_of_a_scene_without_walls_is_straight() {
+    let model = Model::new(Scene::default(), Some(DVec2::new(1.0, 2.0))).unwrap();
+    let points = vec![DVec2::new(4.0, 6.0), DVec2::new(1.0, 3.0)];
+    let traces = settled(&model, &[Trace { id: 0, points }, Trace { id: 1, points: vec![model.anchor()] }]);
+    let records = run(&mut Funnel::new(&model), &traces);
+    assert_eq!((records[0].length, records[0].max_length, records[0].pull), (1.0, 5.0, Some(-DVec2::Y)));
+    assert_eq!((records[1].length, records[1].max_length, records[1].pull), (0.0, 0.0, None));
 }

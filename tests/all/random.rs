@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
 use tautline::candidates::Simd;
 use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Reference};
-use tautline::rope::{Status, TraceRecord, replay};
+use tautline::rope::{EventKind, Status, TraceRecord, replay};
 use tautline::scene::Model;
 use tautline::trace::{SettledTrace, Trace, settle};
 
@@ -79,6 +79,32 @@ fn reference_agrees_with_funnel_after_every_step() {
 fn reference_agrees_with_funnel_where_traces_touch() {
     for kind in KINDS {
         check(kind, true, 1000, reference_agrees_with_funnel);
+    }
+}
+
+/// After every step: the trace is cut off there, and settled anew, so that it ends as it would there.
+fn final_only_agrees_with_funnel(model: &Model, trace: &Trace, _: &SettledTrace) {
+    let cut = |k: usize| settle(model, &Trace { id: k as u64, points: trace.points[..k].to_vec() });
+    let cuts: Vec<_> = (1..=trace.points.len()).map(cut).collect();
+    let every_step = run(&mut Funnel::new(model), &cuts);
+    let final_only = run(&mut Funnel::new(model).final_only(), &cuts);
+    assert_eq!(every_step.len(), final_only.len());
+    for (every, last) in every_step.iter().zip(&final_only) {
+        let result = |r: &TraceRecord| (r.trace, r.status, r.steps, r.length, r.depth, r.wraps.clone(), r.pull);
+        assert_eq!(result(every), result(last));
+        assert_eq!((last.max_length, last.max_depth), (last.length, last.depth));
+        let wraps: Vec<_> = last.events.iter().map(|e| (model.vertices()[e.vertex as usize], e.side)).collect();
+        assert_eq!(wraps, last.wraps);
+        assert!(last.events.iter().all(|e| (e.kind, u64::from(e.step)) == (EventKind::Wrap, last.steps)));
+    }
+}
+
+#[test]
+fn final_only_gives_the_funnels_ropes() {
+    for kind in KINDS {
+        for touching in [false, true] {
+            check(kind, touching, 300, final_only_agrees_with_funnel);
+        }
     }
 }
 

@@ -7,36 +7,61 @@
 //! else, so the two check each other. It keeps no contacts passed straight: events may differ from the reference's, taut
 //! ropes may not.
 
+mod chains;
+mod drag;
+mod log;
 mod mesh;
-mod path;
+mod triangle;
 mod word;
 
-use glam::DVec2;
+use rayon::prelude::*;
 
-use self::mesh::Mesh;
-use self::path::Path;
-use self::word::Word;
-use super::walk::Walk;
+use self::drag::Drag;
+use self::mesh::{Mesh, bounds};
 use super::{Engine, EngineError, Job};
-use crate::rope::{EventKind, Side, TraceRecord};
+use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
-/// A contact of the taut rope: vertex and side.
-type Contact = (u32, Side);
-
-/// The engine that finds the taut rope anew from the trace's crossing word after every step.
+/// The engine that keeps the funnel of each trace's crossing word up to date, on all cores.
 ///
-/// O(triangles crossed + length of the word) a step, on one thread.
-#[derive(Clone, Copy)]
+/// A step costs O(1 + edges crossed) times the logarithm of the corners that the funnel's ends and the rope's last corner
+/// pass over. The triangulation is made once, and anew only for traces that lead far outside the scene.
 pub struct Funnel<'m> {
     model: &'m Model,
+    mesh: Option<Mesh>,
+    final_only: bool,
 }
 
 impl<'m> Funnel<'m> {
     /// An engine for `model`.
     pub fn new(model: &'m Model) -> Self {
-        Funnel { model }
+        Funnel { model, mesh: None, final_only: false }
+    }
+
+    /// The same engine for final ropes only: it follows the crossing words alone and makes each trace's funnel once, at
+    /// its end.
+    ///
+    /// A record's `length`, `depth`, `wraps` and `pull` are those of the engine that sees every step. Its `max_length` and
+    /// `max_depth` are the final rope's too, and its events wrap the final rope, all in the last step.
+    ///
+    /// ```
+    /// use tautline::engine::{Engine, Funnel, Job};
+    /// use tautline::scene::{Model, Scene};
+    /// use tautline::trace::{Trace, settle};
+    /// let walls = [[[1.0, 0.0].into(), [1.0, 5.0].into()]];
+    /// let model = Model::new(Scene::new(walls)?, Some([0.0, 1.0].into()))?;
+    /// // Down below the wall, up behind it and a little back.
+    /// let points = [[0.0, -1.0], [3.0, -1.0], [3.0, 4.0], [2.0, 0.0]].map(Into::into).to_vec();
+    /// let trace = settle(&model, &Trace { id: 0, points });
+    /// let record = Funnel::new(&model).final_only().evaluate(&[trace], &Job::new())?.remove(0);
+    /// assert_eq!((record.depth, record.max_length), (1, record.length));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn final_only(mut self) -> Self {
+        self.final_only = true;
+        self
     }
 }
 
@@ -46,44 +71,15 @@ impl Engine for Funnel<'_> {
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        let model = self.model;
-        let mesh = Mesh::new(model, traces)?;
-        let mut walk = Walk::new();
-        let mut word = Word::default();
-        let mut path = Path::default();
-        let mut records = Vec::with_capacity(traces.len());
-        for trace in traces {
-            walk.start(model, trace);
-            word.start(&mesh, trace.point(0));
-            while !walk.is_done(trace) {
-                job.go_on()?;
-                let to = walk.at + 1;
-                word.go(&mesh, trace.point(to - 1), trace.point(to));
-                if trace.ends_step(to) {
-                    let taut = path.tighten(&mesh, model.anchor(), word.portals(), trace.points()[to]);
-                    change(&mut walk, trace, model.vertices(), taut);
-                }
-                let before = trace.step(walk.at);
-                walk.arrive(trace);
-                job.count(trace.step(walk.at) - before);
-            }
-            records.push(walk.record(trace));
-        }
-        Ok(records)
-    }
-}
-
-/// Turns the rope into `taut`: unwraps what it no longer touches and wraps what is new.
-fn change(walk: &mut Walk, trace: &SettledTrace, vertices: &[DVec2], taut: &[Contact]) {
-    let contacts = walk.rope.contacts();
-    let kept = contacts.iter().zip(taut).take_while(|(c, t)| (c.vertex, c.side) == **t).count();
-    while walk.rope.contacts().len() > kept {
-        if let Some(c) = walk.rope.pop() {
-            walk.note(trace, EventKind::Unwrap, c.vertex, c.side);
-        }
-    }
-    for &(vertex, side) in &taut[kept..] {
-        walk.rope.push(vertex, vertices[vertex as usize], side);
-        walk.note(trace, EventKind::Wrap, vertex, side);
+        job.go_on()?;
+        let bounds = bounds(self.model, traces);
+        let mesh = match self.mesh.take() {
+            Some(mesh) if mesh.covers(bounds) => mesh,
+            _ => Mesh::new(self.model, bounds)?,
+        };
+        let mesh = self.mesh.insert(mesh);
+        let (model, final_only) = (self.model, self.final_only);
+        let evaluate = |drag: &mut Drag, trace| drag.evaluate(model, mesh, trace, final_only, job);
+        traces.par_iter().map_init(Drag::default, evaluate).collect()
     }
 }
