@@ -90,6 +90,7 @@ impl EngineArgs {
     }
 }
 
-fn named(adapter: &str) -> AdapterChoice {
+/// The adapter that `--adapter` means.
+pub(super) fn named(adapter: &str) -> AdapterChoice {
     if adapter == "software" { AdapterChoice::Software } else { AdapterChoice::Named(adapter.to_owned()) }
 }
