@@ -30,7 +30,7 @@ pub(crate) struct Args {
     /// tenth of the mean distance between walls in files]
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     step: Option<f64>,
-    /// How many traces there are; slow engines run on the first of them
+    /// How many traces there are
     #[arg(long, value_name = "N", default_value = "2000", value_parser = clap::value_parser!(u32).range(1..))]
     traces: u32,
     /// How many steps a trace has
@@ -42,7 +42,7 @@ pub(crate) struct Args {
     /// How often every engine runs
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..))]
     repeats: u32,
-    /// About how long one run may take, in seconds; engines that need longer run on fewer traces
+    /// About how long one run may take, in seconds; engines that need longer run on part of the work
     #[arg(long, value_name = "TIME", default_value = "1", value_parser = length)]
     seconds: f64,
     /// Only this engine; may be given several times

@@ -16,11 +16,11 @@ pub(super) fn bench(environment: &Environment, setting: &Setting, plan: &Plan, r
         let (n, step) = (grouped(row.n as u64), short(setting.step));
         text += &format!("scene     {}: {n} wall ends; steps of about {step}\n\n", setting.scene.name());
     }
-    let names = ["engine", "variant", "threads", "traces"];
+    let names = ["engine", "variant", "threads", "traces", "steps"];
     let name = |row: &Row| {
         let contender = row.contender;
-        let (threads, traces) = (contender.threads().to_string(), grouped(row.traces as u64));
-        [contender.engine.to_owned(), variant(row), threads, traces]
+        let [traces, steps] = [row.traces, row.steps].map(|count| grouped(count as u64));
+        [contender.engine.to_owned(), variant(row), contender.threads().to_string(), traces, steps]
     };
     text += &table(&names, &["steps/s", "ns/step", "min..max", "x note", "min..max"], rows, name, |row| {
         let [ratio, paired] = relative(row);
@@ -61,11 +61,11 @@ pub(super) fn sweep(environment: &Environment, sweep: Sweep, base: &Setting, pla
         Sweep::Window => grouped(row.setting.window as u64),
     };
     let name = |row: &Row| {
-        let traces = grouped(row.traces as u64);
-        [value(row), row.contender.engine.to_owned(), row.contender.variant.to_owned(), traces]
+        let [traces, steps] = [row.traces, row.steps].map(|count| grouped(count as u64));
+        [value(row), row.contender.engine.to_owned(), row.contender.variant.to_owned(), traces, steps]
     };
     let columns = ["steps/s", "ns/step", "min..max", "tests/step", "events/step", "x note"];
-    text += &table(&[swept, "engine", "variant", "traces"], &columns, rows, name, |row| {
+    text += &table(&[swept, "engine", "variant", "traces", "steps"], &columns, rows, name, |row| {
         let tests = row.tests_avoided_per_step.map_or(NONE.to_owned(), |_| short(row.tests_per_step));
         let [ratio, _] = relative(row);
         let (ns, events) = (row.ns_per_step, short(row.events_per_step));

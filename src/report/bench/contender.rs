@@ -111,6 +111,11 @@ impl Contender {
         matches!(self.open, Open::Gpu(_))
     }
 
+    /// Whether it evaluates many traces at once, in rounds.
+    pub(super) fn in_rounds(&self) -> bool {
+        !matches!(self.open, Open::Thread(_))
+    }
+
     /// How many threads it computes on; a GPU's own are not counted.
     pub fn threads(&self) -> usize {
         match self.open {

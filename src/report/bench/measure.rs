@@ -3,19 +3,21 @@
 use std::time::Duration;
 
 use super::agreement::Agreement;
-use super::contender::{Contender, Gear};
+use super::contender::{CONTENDERS, Contender, Gear};
 use super::runner::Runner;
 use super::setting::Work;
 use super::{BenchError, Setting};
-use crate::engine::{EngineError, Job, Phase};
+use crate::engine::{Cpu, Engine, EngineError, Job, Phase};
 use crate::report::Spread;
+use crate::trace::SettledTrace;
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan {
     /// How often every contender runs, at least 1.
     pub repeats: usize,
-    /// About how long one run may take; contenders too slow for all traces run on fewer.
+    /// About how long one run may take. Contenders too slow for all traces run on fewer; those that evaluate many at once
+    /// run on the first steps of them.
     pub run: Duration,
 }
 
@@ -34,12 +36,14 @@ pub struct Progress {
 pub struct Row {
     /// Which contender.
     pub contender: Contender,
-    /// On what; its number of traces is that of the whole batch.
+    /// On what; its numbers of traces and steps are those of the whole work.
     pub setting: Setting,
     /// The number of vertices.
     pub n: usize,
     /// On how many of the traces it ran.
     pub traces: usize,
+    /// How many steps of each: all, or the first.
+    pub steps: usize,
     /// The time a step of a trace, in nanoseconds, over the repeats.
     pub ns_per_step: Spread,
     /// How many vertices were tried a step; 0 for engines that try none.
@@ -54,8 +58,7 @@ pub struct Row {
     pub phases: [f64; Phase::ALL.len()],
     /// How much faster it is than the baseline, if that was measured.
     pub relative: Option<Relative>,
-    /// On how many of its traces the rope at the end is wrong; only for contenders that promise no right ones, if another
-    /// one that does was measured on the same traces.
+    /// On how many of its traces the rope at the end is wrong; only for contenders that promise no right ones.
     pub wrong_ropes: Option<usize>,
 }
 
@@ -101,6 +104,8 @@ impl Row {
 /// A contender with its runs so far.
 struct Lane<'w> {
     runner: Runner<'w>,
+    /// What is known of its traces, if they are shorter than those of others.
+    own: Option<Agreement>,
     ns: Vec<f64>,
     tests: u64,
     events: u64,
@@ -132,13 +137,14 @@ pub fn measure(
     for &contender in contenders {
         next(contender);
         match ready(contender, work, gear, plan) {
-            Ok(Some(runner)) => lanes.push(Lane::new(runner)),
+            Ok(Some(runner)) => lanes.push(Lane::new(runner, work)?),
             Ok(None) => skipped.push((contender, "there is no GPU".to_owned())),
             Err(EngineError::Unfit { why, .. }) => skipped.push((contender, why)),
             Err(other) => return Err(other.into()),
         }
     }
-    let mut agreement = Agreement::new(work.traces.len());
+    let whole = lanes.iter().filter(|lane| lane.own.is_none()).map(|lane| lane.runner.traces().len()).max();
+    let mut agreement = known(work, &work.traces[..whole.unwrap_or(0)])?;
     for repeat in 0..plan.repeats {
         for i in order(lanes.len(), repeat) {
             next(lanes[i].runner.contender);
@@ -147,13 +153,24 @@ pub fn measure(
     }
     for lane in &mut lanes {
         next(lane.runner.contender);
-        lane.time_phases(&mut agreement)?;
+        lane.time_phases()?;
     }
     let baseline = lanes.iter().find(|lane| lane.runner.contender.is_baseline()).map(|lane| lane.ns.clone());
     Ok(Measured {
         rows: lanes.iter().filter_map(|lane| lane.row(work, baseline.as_deref())).collect(),
         skipped: skipped.into_iter().map(|(c, why)| Skipped { contender: c.name(), why }).collect(),
     })
+}
+
+/// What the engine `cpu` makes of `traces`, with which all runs on them are compared. Whether it is right itself, the
+/// other contenders show.
+fn known(work: &Work, traces: &[SettledTrace]) -> Result<Agreement, BenchError> {
+    let mut agreement = Agreement::new(traces.len());
+    let cpu = CONTENDERS.into_iter().find(|c| c.engine == "cpu");
+    if let Some(cpu) = cpu {
+        agreement.check(cpu, &Cpu::new(&work.model).evaluate(traces, &Job::new())?)?;
+    }
+    Ok(agreement)
 }
 
 fn ready<'w>(
@@ -176,8 +193,9 @@ fn order(count: usize, repeat: usize) -> impl Iterator<Item = usize> {
 }
 
 impl<'w> Lane<'w> {
-    fn new(runner: Runner<'w>) -> Self {
-        Lane { runner, ns: Vec::new(), tests: 0, events: 0, wrong: None, phases: Default::default() }
+    fn new(runner: Runner<'w>, work: &Work) -> Result<Self, BenchError> {
+        let own = if runner.is_short() { Some(known(work, runner.traces())?) } else { None };
+        Ok(Lane { runner, own, ns: Vec::new(), tests: 0, events: 0, wrong: None, phases: Default::default() })
     }
 
     /// Runs once more, and compares what comes out with what others gave.
@@ -187,15 +205,13 @@ impl<'w> Lane<'w> {
         self.ns.push(run.ns_per_step);
         self.tests = job.tests();
         self.events = run.records.iter().map(|r| r.events.len() as u64).sum();
-        agreement.check(self.runner.contender, &run.records)?;
+        self.wrong = self.own.as_mut().unwrap_or(agreement).check(self.runner.contender, &run.records)?;
         Ok(())
     }
 
-    /// Runs with the clock on. By now all is known that the ropes of those who promise nothing can be compared with.
-    fn time_phases(&mut self, agreement: &mut Agreement) -> Result<(), BenchError> {
+    fn time_phases(&mut self) -> Result<(), EngineError> {
         let job = Job::timed();
-        let run = self.runner.run(&job)?;
-        self.wrong = agreement.check(self.runner.contender, &run.records)?;
+        self.runner.run(&job)?;
         let steps = self.runner.steps() as f64;
         self.phases = Phase::ALL.map(|phase| job.phase(phase).as_nanos() as f64 / steps);
         Ok(())
@@ -214,7 +230,8 @@ impl<'w> Lane<'w> {
             contender,
             setting: work.setting.clone(),
             n,
-            traces: self.runner.traces,
+            traces: self.runner.traces().len(),
+            steps: self.runner.steps_a_trace(),
             ns_per_step,
             tests_per_step,
             tests_avoided_per_step: (self.tests > 0).then(|| (n + 1) as f64 - tests_per_step),

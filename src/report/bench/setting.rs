@@ -89,12 +89,22 @@ impl Setting {
     /// An anchor in a wall, or a walk that crosses one, neither of which should happen.
     pub fn work(&self) -> Result<Work, BenchError> {
         let model = self.scene.model(self.seed)?;
-        let walker = Walker { step: self.step, steps: self.steps, seed: self.seed };
-        let traces = settled_walks(&model, walker, self.traces);
+        let traces = settled_walks(&model, self.walker(self.steps), self.traces);
         match traces.iter().find_map(|trace| trace.violation()) {
             Some(violation) => Err((*violation).into()),
             None => Ok(Work { setting: self.clone(), model, traces }),
         }
+    }
+
+    fn walker(&self, steps: usize) -> Walker {
+        Walker { step: self.step, steps, seed: self.seed }
+    }
+}
+
+impl Work {
+    /// The first `steps` steps of the first `traces` traces: walks are the same as far as they go.
+    pub(super) fn first_steps(&self, steps: usize, traces: u64) -> Vec<SettledTrace> {
+        settled_walks(&self.model, self.setting.walker(steps), traces)
     }
 }
 
