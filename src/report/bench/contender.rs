@@ -70,7 +70,7 @@ pub const CONTENDERS: [Contender; 6] = [
         variant: "window 1, all vertices",
         promise: Promise::Events,
         windowed: false,
-        open: Open::Gpu(|gpu, _| gpu.window(1)),
+        open: Open::Gpu(|gpu, _| gpu.window(1).keep_all()),
     },
     Contender {
         engine: "funnel",
@@ -111,8 +111,8 @@ impl Contender {
         matches!(self.open, Open::Gpu(_))
     }
 
-    /// Whether it evaluates many traces at once, in rounds.
-    pub(super) fn in_rounds(&self) -> bool {
+    /// Whether it evaluates many traces at once, on all cores or in rounds of the GPU.
+    pub(super) fn takes_many(&self) -> bool {
         !matches!(self.open, Open::Thread(_))
     }
 
