@@ -6,7 +6,8 @@
 //! and the CPU decides exactly what happens.
 //!
 //! Data flows one way: a [`scene`] and its anchor make a [`Model`](scene::Model); a [`trace`] is checked against the model
-//! and settled; an [`engine`] turns settled traces into [`TraceRecord`](rope::TraceRecord)s; [`output`] writes them.
+//! and settled; an [`engine`] turns settled traces into [`TraceRecord`](rope::TraceRecord)s; [`output`] writes them. [`report`]
+//! measures engines against each other.
 //!
 //! ```
 //! use tautline::engine::{Engine, Job, Reference};
@@ -34,6 +35,7 @@ pub mod geometry;
 pub mod gpu;
 pub mod output;
 mod read_error;
+pub mod report;
 pub mod rope;
 pub mod scene;
 pub mod trace;

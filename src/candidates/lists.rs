@@ -65,6 +65,14 @@ impl<'m> Lists<'m> {
         self
     }
 
+    /// Drops all lists and the triangulation from which they were made.
+    pub fn forget(&mut self) {
+        self.visibility.take();
+        self.entries.iter_mut().for_each(|entry| *entry = Entry::default());
+        *self.bytes.get_mut() = 0;
+        *self.made.get_mut() = 0;
+    }
+
     /// The model whose vertices are listed.
     pub fn model(&self) -> &'m Model {
         self.model

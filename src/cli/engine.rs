@@ -93,6 +93,7 @@ fn threads() -> String {
     format!("{} threads", rayon::current_num_threads())
 }
 
-fn named(adapter: &str) -> AdapterChoice {
+/// The adapter that `--adapter` means.
+pub(super) fn named(adapter: &str) -> AdapterChoice {
     if adapter == "software" { AdapterChoice::Software } else { AdapterChoice::Named(adapter.to_owned()) }
 }

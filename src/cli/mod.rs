@@ -1,6 +1,7 @@
 //! Parsing and printing. Everything that happens in between is the library's.
 
 mod adapters;
+mod bench;
 mod check;
 mod engine;
 pub(crate) mod environment;
@@ -38,6 +39,8 @@ enum Command {
     Eval(eval::Args),
     /// Check a scene, and traces in it, without evaluating ropes
     Check(check::Args),
+    /// Measure the throughput of all engines, side by side on the same walks
+    Bench(bench::Args),
     /// List the GPUs that this machine offers
     Adapters(adapters::Args),
 }
@@ -50,6 +53,7 @@ pub(crate) fn run() -> ExitCode {
     let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
         Command::Eval(args) => eval::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Adapters(args) => adapters::run(&args),
     }));
     match outcome {

@@ -57,7 +57,7 @@ impl Spread {
 }
 
 /// Four significant digits, in the plain way where that is short.
-fn short(x: f64) -> String {
+pub(super) fn short(x: f64) -> String {
     let size = x.abs();
     if size == 0.0 {
         "0".to_owned()
@@ -70,7 +70,7 @@ fn short(x: f64) -> String {
 }
 
 /// A count with commas between its thousands.
-fn grouped(count: u64) -> String {
+pub(super) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();
     for (i, digit) in digits.chars().enumerate() {

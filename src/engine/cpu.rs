@@ -67,6 +67,10 @@ impl Engine for Cpu<'_> {
         let lane = || Lane { engine: this, course: Course::new(), slopes: Slopes::default(), found: Vec::new() };
         traces.par_iter().map_init(lane, |lane, trace| lane.evaluate(trace, job)).collect()
     }
+
+    fn forget(&mut self) {
+        self.lists.forget();
+    }
 }
 
 /// What evaluates one trace after the other.

@@ -70,4 +70,9 @@ impl Engine for Gpu<'_> {
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
         batch::evaluate(&mut self.pass, &self.lists, self.window, traces, job)
     }
+
+    fn forget(&mut self) {
+        self.lists.forget();
+        self.pass.forget();
+    }
 }

@@ -41,6 +41,9 @@ pub trait Engine {
     ///
     /// [`EngineError::Stopped`] when the job was stopped, and whatever can go wrong with the engine's device.
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError>;
+
+    /// Forgets what was made of the model on the way, so that the next evaluation makes it anew: for measurements.
+    fn forget(&mut self) {}
 }
 
 /// Why an engine gave no result.

@@ -1,7 +1,14 @@
-//! The built-in example: a floor plan, and traces walked in it.
+//! What there is without files: scenes by name, and traces walked in them.
 
+mod built_in;
+mod draws;
 mod floor_plan;
+mod lattice_walls;
+mod random_walls;
 mod walker;
 
+pub use built_in::{BuiltIn, NameError};
 pub use floor_plan::floor_plan;
-pub use walker::{Walker, walks};
+pub use lattice_walls::lattice_walls;
+pub use random_walls::random_walls;
+pub use walker::{Walker, settled_walks, walks};

@@ -1,12 +1,11 @@
 //! Random walks that respect the walls.
 
 use glam::DVec2;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
+use super::draws::Draws;
 use crate::scene::Model;
-use crate::trace::Trace;
+use crate::trace::{SettledTrace, Trace, settle};
 
 /// By how much the heading turns at most in one step, in radians.
 const TURN: f64 = 0.4;
@@ -32,19 +31,23 @@ pub fn walks(model: &Model, walker: Walker, count: u64) -> Vec<Trace> {
     (0..count).into_par_iter().map(|id| walk(model, bounds, walker, id)).collect()
 }
 
+/// The same traces, settled. Holds no trace twice, so that long ones in large numbers fit in memory.
+pub fn settled_walks(model: &Model, walker: Walker, count: u64) -> Vec<SettledTrace> {
+    let bounds = model.bounds();
+    (0..count).into_par_iter().map(|id| settle(model, &walk(model, bounds, walker, id))).collect()
+}
+
 fn walk(model: &Model, (low, high): (DVec2, DVec2), walker: Walker, id: u64) -> Trace {
-    let mut rng = ChaCha8Rng::seed_from_u64(walker.seed);
-    rng.set_stream(id);
-    let mut uniform = |size: f64| (2.0 * ((rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64) - 1.0) * size;
+    let mut draws = Draws::new(walker.seed, id);
     let mut here = model.anchor();
-    let mut heading = uniform(std::f64::consts::PI);
+    let mut heading = draws.within(std::f64::consts::PI);
     let mut points = Vec::with_capacity(walker.steps + 1);
     points.push(here);
     for _ in 0..walker.steps {
         let mut widest = TURN;
         for _ in 0..32 {
-            let turned = heading + uniform(widest);
-            let offset = DVec2::new(uniform(0.2), uniform(0.2));
+            let turned = heading + draws.within(widest);
+            let offset = draws.point(0.2);
             let next = here + walker.step * (0.8 * DVec2::from_angle(turned) + offset);
             let inside = next.cmpge(low).all() && next.cmple(high).all();
             if inside && model.is_clear(here, next) {

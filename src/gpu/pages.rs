@@ -126,15 +126,24 @@ impl Pages {
             self.blocks.push(self.new_block(opened));
             return Some(self.blocks.len() - 1);
         }
-        let (oldest, block) = self.blocks.iter_mut().enumerate().min_by_key(|(_, block)| block.used)?;
+        let (oldest, block) = self.blocks.iter().enumerate().min_by_key(|(_, block)| block.used)?;
         if block.used == self.round {
             return None;
         }
-        for pivot in block.pivots.drain(..) {
-            self.places[pivot as usize] = NOWHERE;
-        }
-        block.filled = 0;
+        self.empty(oldest);
         Some(oldest)
+    }
+
+    fn empty(&mut self, block: usize) {
+        let block = &mut self.blocks[block];
+        block.pivots.drain(..).for_each(|pivot| self.places[pivot as usize] = NOWHERE);
+        block.filled = 0;
+    }
+
+    /// Empties all blocks.
+    pub(super) fn forget(&mut self) {
+        (0..self.blocks.len()).for_each(|block| self.empty(block));
+        self.open = 0;
     }
 
     fn new_block(&self, opened: &Device) -> Block {

@@ -145,6 +145,11 @@ impl GpuPass {
         self.capacity
     }
 
+    /// Forgets which lists lie on the device.
+    pub fn forget(&mut self) {
+        self.pages.forget();
+    }
+
     /// Starts to put a round together; see [`place`](Self::place).
     pub fn start_round(&mut self) {
         self.pages.start_round();

@@ -1,6 +1,7 @@
 //! All integration tests, in one binary.
 
 mod batch;
+mod built_in;
 mod cli;
 mod conservative;
 mod golden;

@@ -82,4 +82,8 @@ impl Engine for Funnel<'_> {
         let evaluate = |drag: &mut Drag, trace| drag.evaluate(model, mesh, trace, final_only, job);
         traces.par_iter().map_init(Drag::default, evaluate).collect()
     }
+
+    fn forget(&mut self) {
+        self.mesh = None;
+    }
 }

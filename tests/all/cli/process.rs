@@ -111,12 +111,9 @@ mod unix {
         assert!(folder.files() == before, "there are {:?}", folder.files().keys());
     }
 
+    /// Waits until the program handles Ctrl-C.
     #[cfg(target_os = "linux")]
-    #[test]
-    fn ctrl_c_during_a_long_evaluation_leaves_everything_as_it_was() {
-        let folder = Folder::hand_made();
-        let before = folder.files();
-        let mut child = start(&folder, "eval --engine reference --out r.jsonl --events e.csv");
+    fn wait_until_it_listens(child: &mut Child) {
         // SIGINT is bit 1 of the signals that the program handles.
         let path = format!("/proc/{}/status", child.id());
         let handles = || {
@@ -125,8 +122,28 @@ mod unix {
             u64::from_str_radix(caught.trim(), 16).unwrap() & 2 != 0
         };
         while !handles() {
-            assert_runs(&mut child);
+            assert_runs(child);
         }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn ctrl_c_ends_a_bench() {
+        let folder = Folder::new();
+        // The reference alone would take minutes.
+        let mut child = start(&folder, "bench --engine reference --seconds 1000 --traces 4000");
+        wait_until_it_listens(&mut child);
+        interrupt(&child);
+        finish(child).has_failed(130, "benching", &["error: stopped; nothing was written"]);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn ctrl_c_during_a_long_evaluation_leaves_everything_as_it_was() {
+        let folder = Folder::hand_made();
+        let before = folder.files();
+        let mut child = start(&folder, "eval --engine reference --out r.jsonl --events e.csv");
+        wait_until_it_listens(&mut child);
         interrupt(&child);
         finish(child).has_failed(130, "evaluating", &["error: stopped; nothing was written"]);
         assert!(folder.files() == before, "there are {:?}", folder.files().keys());

@@ -1,0 +1,44 @@
+//! The scene of a bench: a name or a file.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::anyhow;
+use glam::DVec2;
+use tautline::example::{BuiltIn, NameError};
+use tautline::report::bench::BenchScene;
+use tautline::scene::{AnchorError, Model, read_scene};
+
+use super::super::failure::Failure;
+
+/// The scene called `name`, or the one in that file.
+pub(super) fn open(name: &str, anchor: Option<DVec2>) -> Result<BenchScene, Failure> {
+    let path = Path::new(name);
+    match name.parse::<BuiltIn>() {
+        Ok(_) if anchor.is_some() => {
+            Err(Failure::input(anyhow!("--anchor goes with a scene file; {name} has an anchor of its own")))
+        }
+        Ok(scene) => Ok(BenchScene::BuiltIn(scene)),
+        Err(error @ NameError::Walls { .. }) if !path.exists() => Err(Failure::input(error.into())),
+        Err(error @ NameError::Unknown(_)) if !path.exists() && path.extension().is_none() => {
+            Err(Failure::input(anyhow!("{error}; and there is no file of that name")))
+        }
+        Err(_) => {
+            let model = Model::new(read_scene(path)?, anchor).map_err(|error| match error {
+                AnchorError::Missing => Failure::input(anyhow!("{name}: no anchor; give --anchor X,Y")),
+                other => Failure::input(anyhow!("{name}: {other}")),
+            })?;
+            Ok(BenchScene::Own { name: name.to_owned(), model: Arc::new(model) })
+        }
+    }
+}
+
+/// Two numbers with a comma between them.
+pub(super) fn point(text: &str) -> Result<DVec2, String> {
+    let wrong = || "give two numbers with a comma between them, such as 1.5,-2".to_owned();
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y]) => Ok(DVec2::new(x, y)),
+        _ => Err(wrong()),
+    }
+}

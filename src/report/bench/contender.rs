@@ -1,0 +1,148 @@
+//! The table of what is measured against each other: one line a row of the report.
+
+use crate::engine::{Cpu, Engine, EngineError, Funnel, Gpu, Note, Reference};
+use crate::gpu::Device;
+use crate::scene::Model;
+
+/// An engine in one of its variants.
+#[derive(Clone, Copy)]
+pub struct Contender {
+    /// The engine's name, as the command line knows it.
+    pub engine: &'static str,
+    /// How it is used, in a few words.
+    pub variant: &'static str,
+    /// What its results must agree with.
+    pub(super) promise: Promise,
+    /// Whether the widest window changes what it does.
+    pub windowed: bool,
+    open: Open,
+}
+
+/// What engines run on.
+#[derive(Clone)]
+pub struct Gear {
+    /// The GPU; contenders that need one are left out if there is none.
+    pub device: Option<Device>,
+    /// The most legs that one query covers, at least 1.
+    pub window: usize,
+}
+
+/// What a contender's results must agree with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Promise {
+    /// Every record is that of the reference, event for event.
+    Events,
+    /// The taut rope at the end is the reference's; events may differ.
+    Ropes,
+    /// Nothing: its ropes may be wrong, and how many are is reported.
+    Nothing,
+}
+
+/// How a contender's engine is made.
+#[derive(Clone, Copy)]
+enum Open {
+    /// On a GPU.
+    Gpu(for<'m> fn(Gpu<'m>, usize) -> Gpu<'m>),
+    /// On all cores.
+    Threads(for<'m> fn(&'m Model, usize) -> Box<dyn Engine + 'm>),
+    /// On one thread.
+    Thread(for<'m> fn(&'m Model) -> Box<dyn Engine + 'm>),
+}
+
+/// All contenders, in the order of the report. The baseline, `note`, is one of them.
+pub const CONTENDERS: [Contender; 7] = [
+    Contender {
+        engine: "gpu",
+        variant: "windows",
+        promise: Promise::Events,
+        windowed: true,
+        open: Open::Gpu(|gpu, window| gpu.window(window)),
+    },
+    Contender {
+        engine: "cpu",
+        variant: "windows",
+        promise: Promise::Events,
+        windowed: true,
+        open: Open::Threads(|model, window| Box::new(Cpu::new(model).window(window))),
+    },
+    Contender {
+        engine: "gpu",
+        variant: "window 1, all vertices",
+        promise: Promise::Events,
+        windowed: false,
+        open: Open::Gpu(|gpu, _| gpu.window(1).keep_all()),
+    },
+    Contender {
+        engine: "funnel",
+        variant: "every step",
+        promise: Promise::Ropes,
+        windowed: false,
+        open: Open::Threads(|model, _| Box::new(Funnel::new(model))),
+    },
+    Contender {
+        engine: "funnel",
+        variant: "final rope only",
+        promise: Promise::Ropes,
+        windowed: false,
+        open: Open::Threads(|model, _| Box::new(Funnel::new(model).final_only())),
+    },
+    Contender {
+        engine: "note",
+        variant: "listing 1",
+        promise: Promise::Nothing,
+        windowed: false,
+        open: Open::Thread(|model| Box::new(Note::new(model))),
+    },
+    Contender {
+        engine: "reference",
+        variant: "one by one",
+        promise: Promise::Events,
+        windowed: false,
+        open: Open::Thread(|model| Box::new(Reference::new(model))),
+    },
+];
+
+impl Contender {
+    /// The engine and its variant, as messages name them.
+    pub fn name(&self) -> String {
+        format!("{} ({})", self.engine, self.variant)
+    }
+
+    /// Whether this is what all others are compared with.
+    pub fn is_baseline(&self) -> bool {
+        self.engine == "note"
+    }
+
+    /// Whether it cannot do without a GPU.
+    pub fn needs_gpu(&self) -> bool {
+        matches!(self.open, Open::Gpu(_))
+    }
+
+    /// Whether it evaluates many traces at once, on all cores or in rounds of the GPU.
+    pub(super) fn takes_many(&self) -> bool {
+        !matches!(self.open, Open::Thread(_))
+    }
+
+    /// How many threads it computes on; a GPU's own are not counted.
+    pub fn threads(&self) -> usize {
+        match self.open {
+            Open::Gpu(_) | Open::Threads(_) => rayon::current_num_threads(),
+            Open::Thread(_) => 1,
+        }
+    }
+
+    /// `certified` for engines whose ropes are exact, `f64` for those that trust rounded numbers.
+    pub fn precision(&self) -> &'static str {
+        if self.promise == Promise::Nothing { "f64" } else { "certified" }
+    }
+
+    /// Makes the engine for `model`; `None` if it needs a GPU and there is none.
+    pub(super) fn open<'m>(&self, model: &'m Model, gear: &Gear) -> Result<Option<Box<dyn Engine + 'm>>, EngineError> {
+        Ok(Some(match (self.open, &gear.device) {
+            (Open::Gpu(_), None) => return Ok(None),
+            (Open::Gpu(shape), Some(device)) => Box::new(shape(Gpu::new(device.clone(), model)?, gear.window)),
+            (Open::Threads(make), _) => make(model, gear.window),
+            (Open::Thread(make), _) => make(model),
+        }))
+    }
+}
