@@ -5,6 +5,6 @@ mod predicates;
 mod trace_point;
 
 pub(crate) use limits::Shown;
-pub use limits::{COORDINATE_MAX, COORDINATE_MIN, CoordinateFault, check_point};
+pub use limits::{COORDINATE_MAX, COORDINATE_MIN, CoordinateFault, check_point, check_points};
 pub use predicates::{between, forwards, opposite, orient, same_side};
 pub use trace_point::{Hair, TracePoint, Turn, left_of, orient_step};

@@ -4,15 +4,18 @@ mod caught;
 mod corner;
 mod csv_file;
 mod parquet_file;
+mod pluck;
 mod read;
 mod settle;
+#[cfg(test)]
+mod settle_truth;
 mod settled;
 mod slide;
 
 use glam::DVec2;
 
 pub use read::read_traces;
-pub use settle::settle;
+pub use settle::{settle, settle_owned};
 pub use settled::{SettledTrace, Violation, ViolationKind};
 
 /// One trace: its number and its points, in the scene's frame and unit.
