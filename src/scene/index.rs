@@ -7,6 +7,7 @@ use rstar::{AABB, RTree, RTreeObject};
 
 use super::Scene;
 use super::grid::Grid;
+use crate::geometry::{higher, lower};
 
 /// How many walls the grid's cells may list where they are looked through one by one. With more, as in the one cell that
 /// holds all of a town on a map of the world, the tree is faster.
@@ -74,7 +75,7 @@ impl WallIndex {
             listed if listed <= FEW && cells.height() <= LOW => {
                 for wall in self.grid.walls(cells) {
                     let [u, v] = self.ends[wall as usize];
-                    if !(u.min(v).cmpgt(high).any() || u.max(v).cmplt(low).any()) {
+                    if lower(u, v).cmple(high).all() && higher(u, v).cmpge(low).all() {
                         visit(wall, [u, v])?;
                     }
                 }

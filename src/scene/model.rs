@@ -6,7 +6,7 @@ use std::ops::ControlFlow::{Break, Continue};
 use glam::DVec2;
 
 use super::{Scene, WallIndex};
-use crate::geometry::{CoordinateFault, Shown, between, check_point, forwards, orient, same_side};
+use crate::geometry::{CoordinateFault, Shown, between, check_point, forwards, higher, lower, orient, same_side};
 
 /// Why a rope cannot be tied where the anchor is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -94,7 +94,7 @@ impl Model {
             !same_side(orient(u, v, a), orient(u, v, b)) && !same_side(orient(a, b, u), orient(a, b, v))
         };
         let visit = |_, [u, v]: [DVec2; 2]| if touches(u, v) { Break(()) } else { Continue(()) };
-        self.index.visit(a.min(b), a.max(b), visit).is_continue()
+        self.index.visit(lower(a, b), higher(a, b), visit).is_continue()
     }
 
     /// The lowest and highest x and y of all vertices and the anchor.

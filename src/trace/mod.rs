@@ -3,6 +3,8 @@
 mod caught;
 mod corner;
 mod csv_file;
+mod csv_rows;
+mod gather;
 mod parquet_file;
 mod pluck;
 mod read;
@@ -14,7 +16,7 @@ mod slide;
 
 use glam::DVec2;
 
-pub use read::read_traces;
+pub use read::{TraceReader, read_traces};
 pub use settle::{settle, settle_owned};
 pub use settled::{SettledTrace, Violation, ViolationKind};
 

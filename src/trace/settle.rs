@@ -11,7 +11,7 @@ use glam::DVec2;
 
 use super::pluck::pluck;
 use super::{SettledTrace, Trace, Violation, ViolationKind};
-use crate::geometry::{between, check_points, opposite, orient, same_side};
+use crate::geometry::{between, check_points, higher, lower, opposite, orient, same_side};
 use crate::scene::Model;
 
 /// How many steps share one look at the walls. Most looks find none; one that does is followed by a look for each step.
@@ -68,7 +68,7 @@ impl Layout {
         let mut layout = Layout::start(model, points[0]);
         let mut from = model.anchor();
         for (block, first) in points.chunks(STEPS_PER_LOOK).zip((0..).step_by(STEPS_PER_LOOK)) {
-            let (low, high) = block.iter().fold((from, from), |(low, high), &p| (low.min(p), high.max(p)));
+            let (low, high) = block.iter().fold((from, from), |(low, high), &p| (lower(low, p), higher(high, p)));
             if !model.index().is_free(low, high) {
                 for (&to, step) in block.iter().zip(first..) {
                     layout.step(model, trace, step, [from, to]);
@@ -97,7 +97,7 @@ impl Layout {
         // The vertices that the step passes on its way.
         let mut passed: Vec<DVec2> = Vec::new();
         let mut touches = false;
-        let _ = model.index().visit::<()>(a.min(b), a.max(b), |wall, [u, v]| {
+        let _ = model.index().visit::<()>(lower(a, b), higher(a, b), |wall, [u, v]| {
             touches |= b == u || b == v;
             let mut violate =
                 |kind| keep_first(&mut self.violation, violation(model, trace.id, step, kind, wall, [a, b]));
