@@ -4,4 +4,4 @@ mod floor_plan;
 mod walker;
 
 pub use floor_plan::floor_plan;
-pub use walker::{Walker, walks};
+pub use walker::{Walker, some_walks, walks};

@@ -1,5 +1,7 @@
 //! Random walks that respect the walls.
 
+use std::ops::Range;
+
 use glam::DVec2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -28,8 +30,13 @@ pub struct Walker {
 ///
 /// A walker that finds no way on stays where it is for that step.
 pub fn walks(model: &Model, walker: Walker, count: u64) -> Vec<Trace> {
+    some_walks(model, walker, 0..count)
+}
+
+/// The traces of `walker` with these numbers, on all cores: [`walks`] part by part, for more than fit into memory.
+pub fn some_walks(model: &Model, walker: Walker, numbers: Range<u64>) -> Vec<Trace> {
     let bounds = model.bounds();
-    (0..count).into_par_iter().map(|id| walk(model, bounds, walker, id)).collect()
+    numbers.into_par_iter().map(|id| walk(model, bounds, walker, id)).collect()
 }
 
 fn walk(model: &Model, (low, high): (DVec2, DVec2), walker: Walker, id: u64) -> Trace {
