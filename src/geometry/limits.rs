@@ -55,7 +55,7 @@ pub fn check_points(points: &[DVec2]) -> Result<(), (usize, CoordinateFault)> {
     let fits = |c: f64| {
         let size = c.abs();
         // No branches, so that several points are looked at in one instruction. A NaN fits no comparison.
-        ((size >= COORDINATE_MIN) & (size <= COORDINATE_MAX)) | (size == 0.0)
+        (COORDINATE_MIN..=COORDINATE_MAX).contains(&size) | (size == 0.0)
     };
     if points.iter().fold(true, |sound, p| sound & fits(p.x) & fits(p.y)) {
         return Ok(());

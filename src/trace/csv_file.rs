@@ -4,20 +4,19 @@
 //! pieces are read in parallel. From the first block with a quote on (or with line ends of old Macs), the crate `csv`
 //! reads the rest, record by record.
 
-use std::io::{BufRead, BufReader, Chain, Cursor, Read, Seek};
+use std::io::{Chain, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
 use rayon::prelude::*;
 
-use super::csv_rows::{Chunk, Header, first_line};
+use super::csv_lines::{first_line, is_plain, line_at, pieces, whole_lines};
+use super::csv_rows::{Chunk, Header};
 use super::gather::Gatherer;
 use crate::read_error::{Fault, Place, ReadError};
 
-/// How many bytes are read at a time, and how many of them a thread takes at a time: enough that switching costs little,
-/// and few enough that many threads have work.
+/// How many bytes are read at a time: some pieces for every thread.
 const BLOCK: usize = 1 << 22;
-const PIECE: usize = 1 << 18;
 
 /// The parser's buffer in bytes; large enough that reading costs little next to parsing.
 const BUFFER: usize = 1 << 18;
@@ -181,7 +180,7 @@ impl<R: Read + Seek> CsvRows<R> {
         while chunk.len() < RECORDS && chunk.is_sound() && matches!(more, Ok(true)) {
             more = next(parser, &mut record);
             if let Ok(true) = more {
-                chunk.push(byte(&record), header.row(record.iter()));
+                chunk.push(byte(&record), header.row(record.iter().map(String::from_utf8_lossy)));
             }
         }
         chunk.gather(gatherer)?;
@@ -208,67 +207,6 @@ fn next(parser: &mut Reader<impl Read>, record: &mut ByteRecord) -> Result<bool,
             kind => Stop::Fault { byte, what: format!("not CSV: {kind:?}") },
         }
     })
-}
-
-/// Reads on for about `size` bytes after `start`, and returns the whole lines, the start of the next and whether the input
-/// has ended; then what is left is a whole line too.
-fn whole_lines(input: &mut impl Read, start: Vec<u8>, size: usize) -> std::io::Result<(Vec<u8>, Vec<u8>, bool)> {
-    let mut block = start;
-    loop {
-        let old = block.len();
-        block.reserve_exact(size);
-        if input.by_ref().take(size as u64).read_to_end(&mut block)? < size {
-            return Ok((block, Vec::new(), true));
-        }
-        if let Some(last) = memchr::memrchr(b'\n', &block[old..]) {
-            let rest = block.split_off(old + last + 1);
-            return Ok((block, rest, false));
-        }
-    }
-}
-
-/// Whether whole lines can be read without a parser: without quotes, and all carriage returns right before line ends.
-fn is_plain(lines: &[u8]) -> bool {
-    let ends = |at: usize| matches!(lines.get(at + 1), Some(b'\n' | b'\r') | None);
-    memchr::memchr(b'"', lines).is_none() && memchr::memchr_iter(b'\r', lines).all(ends)
-}
-
-/// Cuts lines into pieces of whole lines, each with its start; counted from `start`.
-fn pieces(lines: &[u8], start: usize) -> Vec<(usize, &[u8])> {
-    let mut pieces = Vec::new();
-    let mut rest = lines;
-    while !rest.is_empty() {
-        let at = rest.len().min(PIECE);
-        let end = memchr::memchr(b'\n', &rest[at..]).map_or(rest.len(), |end| at + end + 1);
-        pieces.push((start + lines.len() - rest.len(), &rest[..end]));
-        rest = &rest[end..];
-    }
-    pieces
-}
-
-/// The line (from 1) of the first row at or after `byte`.
-///
-/// The parser's own line numbers are off where a row follows an empty line or a line that ends with CR LF, because it
-/// takes those line ends as part of the next row. Counting anew is exact, and is done for errors only.
-fn line_at(mut input: impl Read + Seek, byte: u64) -> std::io::Result<u64> {
-    input.rewind()?;
-    let mut input = BufReader::with_capacity(BUFFER, input);
-    let (mut line, mut at) = (1, 0);
-    loop {
-        let buffer = input.fill_buf()?;
-        if buffer.is_empty() {
-            return Ok(line);
-        }
-        for &b in buffer {
-            if at >= byte && !matches!(b, b'\r' | b'\n') {
-                return Ok(line);
-            }
-            line += u64::from(b == b'\n');
-            at += 1;
-        }
-        let read = buffer.len();
-        input.consume(read);
-    }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
+use super::csv_lines::first_line;
 use super::gather::Gatherer;
 
 const COLUMNS: [&str; 3] = ["trace", "x", "y"];
@@ -48,15 +49,14 @@ impl Header {
         Ok(Header { fields, width: found.len() })
     }
 
-    /// The numbers in one row's fields.
-    pub(super) fn row<'a>(&self, fields: impl Iterator<Item = &'a [u8]>) -> Result<(u64, DVec2), String> {
-        let mut texts = [&[][..]; 3];
+    /// The numbers in one row's fields. Where these are not UTF-8, they come with replacement characters, which are no part of
+    /// a number.
+    pub(super) fn row<T: AsRef<str> + Default>(&self, fields: impl Iterator<Item = T>) -> Result<(u64, DVec2), String> {
+        let mut texts: [T; 3] = Default::default();
         let mut width = 0;
         for field in fields {
-            for (text, number) in texts.iter_mut().zip(self.fields) {
-                if number == width {
-                    *text = field;
-                }
+            if let Some(column) = self.fields.iter().position(|&number| number == width) {
+                texts[column] = field;
             }
             width += 1;
         }
@@ -64,23 +64,29 @@ impl Header {
             return Err(format!("{width} fields; the header has {}", self.width));
         }
         let [trace, x, y] = texts;
-        let id = number(trace, "trace", "a whole number from 0")?;
+        let id = number(trace.as_ref(), "trace", "a whole number from 0")?;
         let coordinate = |text, column| number(text, column, "a number such as -1.25 or 3e-7");
-        Ok((id, DVec2::new(coordinate(x, "x")?, coordinate(y, "y")?)))
+        Ok((id, DVec2::new(coordinate(x.as_ref(), "x")?, coordinate(y.as_ref(), "y")?)))
     }
 }
 
 impl Chunk {
     /// Reads whole lines without quotes, which start `start` bytes into what faults are counted in.
     pub(super) fn of_lines(lines: &[u8], start: usize, header: &Header) -> Self {
+        // One look at all of it is cheaper than one at each field.
+        let text = std::str::from_utf8(lines);
         let mut chunk = Chunk::default();
         let mut rest = lines;
         while !rest.is_empty() && chunk.fault.is_none() {
-            let byte = (start + lines.len() - rest.len()) as u64;
+            let at = lines.len() - rest.len();
             let line;
             (line, rest) = first_line(rest);
             if !line.is_empty() {
-                chunk.push(byte, header.row(line.split(|&b| b == b',')));
+                let row = match text {
+                    Ok(text) => header.row(fields(&text[at..at + line.len()])),
+                    Err(_) => header.row(fields(&String::from_utf8_lossy(line))),
+                };
+                chunk.push((start + at) as u64, row);
             }
         }
         chunk
@@ -116,24 +122,18 @@ impl Chunk {
     }
 }
 
-/// Splits off the first line, which comes without its end.
-pub(super) fn first_line(text: &[u8]) -> (&[u8], &[u8]) {
-    let (mut line, rest) = match memchr::memchr(b'\n', text) {
-        Some(end) => (&text[..end], &text[end + 1..]),
-        None => (text, &[][..]),
-    };
-    while let [start @ .., b'\r'] = line {
-        line = start;
-    }
-    (line, rest)
+/// What stands between the commas of a line.
+fn fields(line: &str) -> impl Iterator<Item = &str> {
+    let mut start = 0;
+    memchr::memchr_iter(b',', line.as_bytes()).chain(std::iter::once(line.len())).map(move |end| {
+        let field = &line[start..end];
+        start = end + 1;
+        field
+    })
 }
 
-fn number<T: std::str::FromStr>(field: &[u8], column: &str, right: &str) -> Result<T, String> {
-    let text = std::str::from_utf8(field.trim_ascii()).ok();
-    text.and_then(|text| text.parse().ok()).ok_or_else(|| {
-        let found = excerpt(&String::from_utf8_lossy(field));
-        format!("column {column}: {found} is not {right}")
-    })
+fn number<T: std::str::FromStr>(field: &str, column: &str, right: &str) -> Result<T, String> {
+    field.trim_ascii().parse().map_err(|_| format!("column {column}: {} is not {right}", excerpt(field)))
 }
 
 /// `text` in quotes, cut where it is too long for a message.

@@ -60,7 +60,7 @@ impl Gatherer {
     /// How many points are held.
     #[cfg(test)]
     pub(super) fn held(&self) -> usize {
-        assert_eq!(self.points, self.traces.iter().map(|t| t.points.len()).sum());
+        assert_eq!(self.points, self.traces.iter().map(|t| t.points.len()).sum::<usize>());
         self.points
     }
 

@@ -3,6 +3,7 @@
 mod caught;
 mod corner;
 mod csv_file;
+mod csv_lines;
 mod csv_rows;
 mod gather;
 mod parquet_file;

@@ -159,7 +159,7 @@ mod tests {
         std::io::Write::write_all(&mut file, bytes).unwrap();
         let path = Path::new("t.parquet");
         let mut gatherer = Gatherer::default();
-        let mut read = || {
+        let read = || {
             let mut rows = ParquetRows::open(file)?;
             while rows.read(&mut gatherer)? {}
             Ok(())
