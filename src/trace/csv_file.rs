@@ -331,14 +331,13 @@ mod tests {
                 "0", "1", "2.5", ",", ",", ",", "\n", "\n", "\r\n", "\r", " ", "x", "\"", "\"\"", "\u{feff}", "0,1,2\n",
                 "1,1,1\r\n", "\"1\",2,3\n", "2,-1e-7,nan\n",
             ]), 0..40),
-            start in prop::sample::select(vec!["trace,x,y\n", "\u{feff}trace,x,y\r\n", "x,trace,y,n\n", ""]),
+            start in prop::sample::select(vec!["trace,x,y\n", "\u{feff}trace,x,y\r\n", "x,trace,y,n\n"]),
             block in 1..50usize,
         ) {
             let text = format!("{start}{}", parts.concat());
             let lines = read_in_blocks(text.as_bytes(), block);
             // A quoted field in front changes nothing but makes the parser read all.
             let quoted = text.replacen("trace", "\"trace\"", 1);
-            prop_assume!(quoted != text);
             prop_assert_eq!(lines, read_in_blocks(quoted.as_bytes(), BLOCK));
         }
     }
