@@ -12,7 +12,7 @@ use super::window::Wrapping;
 use super::{List, Query, Slopes};
 
 /// How many points the loops over points take at once.
-pub const BLOCK: usize = 8;
+pub(super) const BLOCK: usize = 8;
 
 /// How many points fit into the bits of a mask.
 const MASK: usize = 64;
@@ -94,7 +94,7 @@ wide! {
 
 /// The least and the greatest slope and the greatest squared distance of some points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Extent {
+pub(crate) struct Extent {
     pub low: f64,
     pub high: f64,
     pub squared: f64,

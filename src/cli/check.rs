@@ -1,8 +1,12 @@
 //! `tautline check`.
 
+use std::sync::Arc;
+
 use serde_json::json;
+use tautline::scene::Model;
 use tautline::trace::{Violation, ViolationKind};
 
+use super::batches::Batches;
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::{interrupt, print, print_json};
@@ -18,26 +22,22 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     interrupt::listen()?;
-    let model = args.input.model()?;
+    let model = Arc::new(args.input.model()?);
     let scene = model.scene();
-    let settled = match args.input.traces {
+    let counts = match args.input.traces {
         None if args.input.scene.is_some() => None,
-        _ => Some(args.input.settle(&model, args.input.read_traces(&model)?)?),
+        _ => Some(count(args, &model)?),
     };
     let anchor = model.anchor();
-    let counts = settled.map(|settled| {
-        let violations: Vec<Violation> = settled.iter().filter_map(|t| t.violation().copied()).collect();
-        (settled.len(), settled.iter().map(|t| t.steps() as u64).sum::<u64>(), violations)
-    });
     if args.json {
         return print_json(&json!({
             "scene": {
                 "name": args.input.name(), "walls": scene.walls().len(), "vertices": scene.vertices().len(),
                 "dropped": scene.dropped(), "anchor": [anchor.x, anchor.y],
             },
-            "traces": counts.map(|(traces, steps, violations)| {
-                let violations: Vec<_> = violations.iter().map(violation).collect();
-                json!({"traces": traces, "steps": steps, "violations": violations})
+            "traces": counts.map(|c| {
+                let violations: Vec<_> = c.violations.iter().map(violation).collect();
+                json!({"traces": c.traces, "steps": c.steps, "violations": violations})
             }),
         }));
     }
@@ -52,10 +52,37 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if scene.dropped() > 0 {
         text += &format!("        {} walls of zero length were dropped\n", scene.dropped());
     }
-    if let Some((traces, steps, violations)) = counts {
-        text += &format!("traces  {traces}, {steps} steps; {} of the traces cross walls\n", violations.len());
+    if let Some(Counts { traces, steps, crossing, .. }) = counts {
+        text += &format!("traces  {traces}, {steps} steps; {crossing} of the traces cross walls\n");
     }
     print(&text)
+}
+
+/// What there is in a file of traces.
+#[derive(Default)]
+struct Counts {
+    traces: usize,
+    steps: u64,
+    crossing: usize,
+    /// All of them, where they are to be listed.
+    violations: Vec<Violation>,
+}
+
+/// Reads all traces, batch by batch.
+fn count(args: &Args, model: &Arc<Model>) -> Result<Counts, Failure> {
+    let mut batches = Batches::start(args.input.source()?, model.clone());
+    let mut violations = args.input.violations();
+    let mut counts = Counts::default();
+    while let Some(batch) = batches.next()? {
+        let found = violations.take(&batch.settled)?;
+        counts.traces += batch.settled.len();
+        counts.steps += batch.settled.iter().map(|t| t.steps() as u64).sum::<u64>();
+        if args.json {
+            counts.violations.extend(found);
+        }
+    }
+    counts.crossing = violations.finish();
+    Ok(counts)
 }
 
 fn violation(v: &Violation) -> serde_json::Value {

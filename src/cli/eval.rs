@@ -1,20 +1,22 @@
 //! `tautline eval`.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::anyhow;
-use tautline::engine::Job;
-use tautline::output::{EventWriter, ResultWriter, WholeFile, check_output};
-use tautline::rope::TraceRecord;
+use tautline::engine::{Engine, Job};
+use tautline::output::check_output;
 use tautline::scene::Model;
 
+use super::batches::{Batch, Batches};
 use super::engine::EngineArgs;
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::interrupt::{self, Writing};
-use super::progress::with_progress;
-use super::summary::Summary;
+use super::output::Output;
+use super::progress::{Progress, with_progress};
+use super::summary::{Summary, Times};
 use super::{print, print_json};
 
 #[derive(Debug, clap::Args)]
@@ -38,29 +40,51 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     interrupt::listen()?;
     // Trying whether a file can be written makes one for a moment.
     let writing = Writing::begin();
-    writing.check()?;
+    interrupt::check()?;
     check_outputs(args)?;
     writing.end()?;
     let start = Instant::now();
-    let model = args.input.model()?;
+    let model = Arc::new(args.input.model()?);
     if model.scene().dropped() > 0 {
         eprintln!("note: {} walls of zero length were dropped", model.scene().dropped());
     }
-    let traces = args.input.read_traces(&model)?;
-    let settled = args.input.settle(&model, traces)?;
+    let batches = Batches::start(args.input.source()?, model.clone());
     let (mut engine, on) = args.engine.open(&model)?;
-    let prepared = start.elapsed();
+    let mut summary = Summary::new(&args.input.name(), &model, (engine.name(), on));
+    let mut times = evaluate(args, &model, batches, &mut *engine, &mut summary)?;
+    times.total = start.elapsed();
+    if args.json { print_json(&summary.json(&times)) } else { print(&summary.table(&times, args.out.is_none())) }
+}
 
-    let job = Job::new();
-    let steps = settled.iter().map(|t| t.steps() as u64).sum();
-    let start = Instant::now();
-    let records = with_progress(&job, steps, || engine.evaluate(&settled, &job))?;
-    let evaluated = start.elapsed();
-    drop(settled);
-    write(args, &model, &records)?;
-
-    let summary = Summary::new(&args.input.name(), &model, (engine.name(), on), &records, prepared, evaluated);
-    if args.json { print_json(&summary.json()) } else { print(&summary.table(args.out.is_none())) }
+/// Evaluates batch after batch, and writes what was asked for.
+fn evaluate(
+    args: &Args,
+    model: &Arc<Model>,
+    mut batches: Batches,
+    engine: &mut dyn Engine,
+    summary: &mut Summary,
+) -> Result<Times, Failure> {
+    let job = Arc::new(Job::new());
+    interrupt::stops(&job);
+    let mut times = Times::default();
+    let mut violations = args.input.violations();
+    let mut output = Output::new(args.out.as_deref(), args.events.as_deref(), model);
+    let progress = Progress::new(batches.size());
+    with_progress(&progress, &job, || {
+        while let Some(Batch { settled, position, prepared }) = batches.next()? {
+            violations.take(&settled)?;
+            progress.begin(position, settled.iter().map(|t| t.steps() as u64).sum());
+            times.prepared += prepared;
+            let start = Instant::now();
+            let records = engine.evaluate(&settled, &job)?;
+            times.evaluated += start.elapsed();
+            summary.add(&records);
+            output.write(records)?;
+        }
+        violations.finish();
+        times.written = output.finish()?;
+        Ok(times)
+    })
 }
 
 /// Refuses outputs that cannot be written, and those that would replace another file of this run.
@@ -89,22 +113,4 @@ fn place(path: &Path) -> PathBuf {
         let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
         path.file_name().map_or(folder.clone(), |name| folder.join(name))
     })
-}
-
-/// Writes what was asked for; files appear under their names only when they are whole.
-fn write(args: &Args, model: &Model, records: &[TraceRecord]) -> Result<(), Failure> {
-    let writing = Writing::begin();
-    writing.check()?;
-    let mut out = args.out.as_deref().map(ResultWriter::create).transpose()?;
-    let mut events = args.events.as_deref().map(EventWriter::create).transpose()?;
-    for record in records {
-        writing.check()?;
-        out.as_mut().map_or(Ok(()), |w| w.write(record))?;
-        events.as_mut().map_or(Ok(()), |w| w.write(model.vertices(), record))?;
-    }
-    // Neither appears before both are whole.
-    let out = out.map(ResultWriter::complete).transpose()?;
-    let events = events.map(EventWriter::complete).transpose()?;
-    writing.check()?;
-    Ok([out, events].into_iter().flatten().try_for_each(WholeFile::finish)?)
 }

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use glam::DVec2;
-use rayon::prelude::*;
-use tautline::example::{Walker, floor_plan, walks};
+use tautline::example::{Walker, floor_plan};
 use tautline::scene::{AnchorError, Model, read_scene};
-use tautline::trace::{SettledTrace, Trace, read_traces, settle};
+use tautline::trace::TraceReader;
 
+use super::batches::Source;
 use super::failure::Failure;
+use super::violations::{OnViolation, Violations};
 
 /// How many traces the built-in example has, and how they are walked.
 const EXAMPLE_TRACES: u64 = 4000;
@@ -66,53 +67,22 @@ impl InputArgs {
     }
 
     /// The traces given, or the example's.
-    pub(crate) fn read_traces(&self, model: &Model) -> Result<Vec<Trace>, Failure> {
+    pub(crate) fn source(&self) -> Result<Source, Failure> {
         match (&self.traces, &self.scene) {
-            (Some(path), Some(_)) => Ok(read_traces(path)?),
-            (None, None) => Ok(walks(model, EXAMPLE_WALK, EXAMPLE_TRACES)),
+            (Some(path), Some(_)) => Ok(Source::File(TraceReader::open(path)?)),
+            (None, None) => Ok(Source::Walks(EXAMPLE_WALK, 0..EXAMPLE_TRACES)),
             (Some(_), None) => Err(Failure::input(anyhow!("--traces needs --scene: the walls that they go by"))),
             (None, Some(_)) => Err(Failure::input(anyhow!("--scene needs --traces: a .csv or .parquet of points"))),
         }
     }
 
-    /// Settles all traces, on all cores, and consumes them.
-    pub(crate) fn settle(&self, model: &Model, traces: Vec<Trace>) -> Result<Vec<SettledTrace>, Failure> {
+    /// What is to be done with traces that cross walls; none so far.
+    pub(crate) fn violations(&self) -> Violations {
         let file = self.traces.as_deref().map_or(String::new(), |p| format!("{}: ", p.display()));
-        let settled: Vec<SettledTrace> = traces.into_par_iter().map(|trace| settle(model, &trace)).collect();
-        let violations: Vec<_> = settled.iter().filter_map(|t| t.violation()).collect();
-        match (violations.first(), self.on_violation) {
-            (Some(first), OnViolation::Error) => {
-                let more = match violations.len() - 1 {
-                    0 => String::new(),
-                    more => format!(" ({more} more traces cross walls)"),
-                };
-                let hint = "--on-violation flag marks such traces and goes on";
-                Err(Failure::input(anyhow!("{file}{first}; {hint}{more}")))
-            }
-            (Some(_), OnViolation::Flag) => {
-                const SHOWN: usize = 1000;
-                violations.iter().take(SHOWN).for_each(|v| eprintln!("warning: {file}{v}"));
-                if violations.len() > SHOWN {
-                    let more = violations.len() - SHOWN;
-                    let list = "`tautline check --on-violation flag --json` lists them all";
-                    eprintln!("warning: and {more} more traces that cross walls; {list}");
-                }
-                Ok(settled)
-            }
-            (None, _) => Ok(settled),
-        }
+        Violations::new(file, self.on_violation)
     }
 }
 
 fn is_geojson(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("geojson") || e.eq_ignore_ascii_case("json"))
-}
-
-/// What to do with a trace that breaks the small update condition.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum OnViolation {
-    /// Stop, and name the first
-    Error,
-    /// Mark such traces in the results and go on
-    Flag,
 }

@@ -1,16 +1,23 @@
 //! Ctrl-C: ends the process at once where nothing needs to be cleaned up, and in good order where files are half written.
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+
+use tautline::engine::Job;
 
 use super::failure::Failure;
 
 static WRITING: AtomicBool = AtomicBool::new(false);
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
+/// What to stop when files are half written.
+static JOB: OnceLock<Arc<Job>> = OnceLock::new();
+
 /// Listens for Ctrl-C from now on.
 pub(crate) fn listen() -> Result<(), Failure> {
     let heard = || {
         STOPPED.store(true, Ordering::SeqCst);
+        JOB.get().into_iter().for_each(|job| job.stop());
         if !WRITING.load(Ordering::SeqCst) {
             eprintln!("\nerror: {}", Failure::interrupted());
             std::process::exit(130);
@@ -19,7 +26,17 @@ pub(crate) fn listen() -> Result<(), Failure> {
     ctrlc::set_handler(heard).map_err(|e| Failure::internal(e.into()))
 }
 
-/// While one of these lives, Ctrl-C waits for [`check`](Writing::check). One that has just begun must be checked before
+/// Has Ctrl-C stop `job`, the one evaluation of this process.
+pub(crate) fn stops(job: &Arc<Job>) {
+    let _ = JOB.set(job.clone());
+}
+
+/// An error once Ctrl-C was pressed, so that half-written files are dropped.
+pub(crate) fn check() -> Result<(), Failure> {
+    if STOPPED.load(Ordering::SeqCst) { Err(Failure::interrupted()) } else { Ok(()) }
+}
+
+/// While one of these lives, Ctrl-C waits for [`check`]. One that has just begun must be checked before
 /// a file is made: Ctrl-C may have come a moment earlier.
 pub(crate) struct Writing;
 
@@ -29,15 +46,10 @@ impl Writing {
         Writing
     }
 
-    /// An error once Ctrl-C was pressed, so that half-written files are dropped.
-    pub(crate) fn check(&self) -> Result<(), Failure> {
-        if STOPPED.load(Ordering::SeqCst) { Err(Failure::interrupted()) } else { Ok(()) }
-    }
-
     /// Ends it when all files are gone again: an error if Ctrl-C was pressed meanwhile.
     pub(crate) fn end(self) -> Result<(), Failure> {
         WRITING.store(false, Ordering::SeqCst);
-        self.check()
+        check()
     }
 }
 

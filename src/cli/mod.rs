@@ -1,6 +1,7 @@
 //! Parsing and printing. Everything that happens in between is the library's.
 
 mod adapters;
+mod batches;
 mod bench;
 mod check;
 mod engine;
@@ -9,8 +10,11 @@ mod eval;
 mod failure;
 mod input;
 mod interrupt;
+mod output;
 mod progress;
+mod spread;
 mod summary;
+mod violations;
 
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,4 +1,4 @@
-//! What `eval` tells of a batch: a short table, or JSON.
+//! What `eval` tells of a run: a short table, or JSON.
 
 use std::time::Duration;
 
@@ -6,7 +6,9 @@ use serde_json::{Value, json};
 use tautline::rope::{EventKind, Status, TraceRecord};
 use tautline::scene::Model;
 
-/// A batch in numbers.
+use super::spread::{Counts, Lengths, Spread};
+
+/// A run in numbers.
 pub(crate) struct Summary {
     scene: String,
     walls: usize,
@@ -15,45 +17,33 @@ pub(crate) struct Summary {
     anchor: [f64; 2],
     on: String,
     engine: &'static str,
-    traces: usize,
+    traces: u64,
     steps: u64,
-    violations: usize,
+    violations: u64,
     wraps: u64,
     unwraps: u64,
-    length: Spread,
-    max_length: Spread,
-    depth: Spread,
-    max_depth: Spread,
-    prepared: Duration,
-    evaluated: Duration,
+    length: Lengths,
+    max_length: Lengths,
+    depth: Counts,
+    max_depth: Counts,
 }
 
-/// Mean, median and maximum over the traces.
-struct Spread {
-    mean: f64,
-    median: f64,
-    max: f64,
+/// How long the parts of a run took. They go on at the same time, so their sum may be more than the whole.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Times {
+    /// Reading and checking traces.
+    pub prepared: Duration,
+    /// The engine.
+    pub evaluated: Duration,
+    /// Writing results and events.
+    pub written: Duration,
+    /// From the start to the end of it all.
+    pub total: Duration,
 }
 
-impl Spread {
-    fn of(records: &[TraceRecord], value: impl Fn(&TraceRecord) -> f64) -> Self {
-        let mut values: Vec<f64> = records.iter().map(value).collect();
-        values.sort_by(f64::total_cmp);
-        let n = values.len();
-        if n == 0 {
-            return Spread { mean: 0.0, median: 0.0, max: 0.0 };
-        }
-        let median = (values[(n - 1) / 2] + values[n / 2]) / 2.0;
-        Spread { mean: values.iter().sum::<f64>() / n as f64, median, max: values[n - 1] }
-    }
-
-    fn row(&self, name: &str) -> String {
-        format!("  {name:26}{:>12}{:>12}{:>12}\n", short(self.mean), short(self.median), short(self.max))
-    }
-
-    fn json(&self) -> Value {
-        json!({"mean": self.mean, "median": self.median, "max": self.max})
-    }
+fn row(name: &str, spread: &Spread) -> String {
+    let [mean, median, max] = [spread.mean, spread.median, spread.max].map(short);
+    format!("  {name:26}{mean:>12}{median:>12}{max:>12}\n")
 }
 
 /// Four significant digits, in the plain way where that is short.
@@ -83,16 +73,8 @@ pub(super) fn grouped(count: u64) -> String {
 }
 
 impl Summary {
-    pub(crate) fn new(
-        scene: &str,
-        model: &Model,
-        (engine, on): (&'static str, String),
-        records: &[TraceRecord],
-        prepared: Duration,
-        evaluated: Duration,
-    ) -> Self {
-        let count =
-            |kind| -> u64 { records.iter().map(|r| r.events.iter().filter(|e| e.kind == kind).count() as u64).sum() };
+    /// No traces so far.
+    pub(crate) fn new(scene: &str, model: &Model, (engine, on): (&'static str, String)) -> Self {
         Summary {
             scene: scene.to_owned(),
             walls: model.scene().walls().len(),
@@ -101,25 +83,40 @@ impl Summary {
             anchor: model.anchor().to_array(),
             on,
             engine,
-            traces: records.len(),
-            steps: records.iter().map(|r| r.steps).sum(),
-            violations: records.iter().filter(|r| r.status == Status::Violation).count(),
-            wraps: count(EventKind::Wrap),
-            unwraps: count(EventKind::Unwrap),
-            length: Spread::of(records, |r| r.length),
-            max_length: Spread::of(records, |r| r.max_length),
-            depth: Spread::of(records, |r| f64::from(r.depth)),
-            max_depth: Spread::of(records, |r| f64::from(r.max_depth)),
-            prepared,
-            evaluated,
+            traces: 0,
+            steps: 0,
+            violations: 0,
+            wraps: 0,
+            unwraps: 0,
+            length: Lengths::default(),
+            max_length: Lengths::default(),
+            depth: Counts::default(),
+            max_depth: Counts::default(),
         }
     }
 
-    fn rate(&self) -> f64 {
-        self.steps as f64 / self.evaluated.as_secs_f64().max(1e-9)
+    /// Counts the next records in.
+    pub(crate) fn add(&mut self, records: &[TraceRecord]) {
+        for record in records {
+            let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count();
+            self.traces += 1;
+            self.steps += record.steps;
+            self.violations += u64::from(record.status == Status::Violation);
+            self.wraps += wraps as u64;
+            self.unwraps += (record.events.len() - wraps) as u64;
+            self.length.add(record.length);
+            self.max_length.add(record.max_length);
+            self.depth.add(record.depth);
+            self.max_depth.add(record.max_depth);
+        }
     }
 
-    pub(crate) fn table(&self, hint: bool) -> String {
+    /// Steps a second from start to end.
+    fn rate(&self, times: &Times) -> f64 {
+        self.steps as f64 / times.total.as_secs_f64().max(1e-9)
+    }
+
+    pub(crate) fn table(&self, times: &Times, hint: bool) -> String {
         let [x, y] = self.anchor;
         let events = self.wraps + self.unwraps;
         let mut text = format!(
@@ -129,28 +126,30 @@ impl Summary {
             self.scene,
             grouped(self.walls as u64),
             grouped(self.vertices as u64),
-            grouped(self.traces as u64),
+            grouped(self.traces),
             grouped(self.steps),
             self.engine,
             self.on,
         );
         if self.violations > 0 {
-            text += &format!("crossing {} traces cross walls and are marked\n", grouped(self.violations as u64));
+            text += &format!("crossing {} traces cross walls and are marked\n", grouped(self.violations));
         }
         text += &format!("events   {} wraps, {} unwraps", grouped(self.wraps), grouped(self.unwraps));
         if self.steps > 0 {
             text += &format!(", {} a step", short(events as f64 / self.steps as f64));
         }
         text += &format!("\n\n  {:26}{:>12}{:>12}{:>12}\n", "over all traces", "mean", "median", "max");
-        text += &self.length.row("rope length at the end");
-        text += &self.max_length.row("longest rope on the way");
-        text += &self.depth.row("contacts at the end");
-        text += &self.max_depth.row("most contacts on the way");
+        text += &row("rope length at the end", &self.length.spread());
+        text += &row("longest rope on the way", &self.max_length.spread());
+        text += &row("contacts at the end", &self.depth.spread());
+        text += &row("most contacts on the way", &self.max_depth.spread());
+        let [prepared, evaluated, written, total] =
+            [times.prepared, times.evaluated, times.written, times.total].map(|t| t.as_secs_f64());
+        let written = if written > 0.0 { format!(", writing {written:.2} s") } else { String::new() };
         text += &format!(
-            "\nread and checked in {:.2} s; evaluated in {:.2} s, {} steps/s\n",
-            self.prepared.as_secs_f64(),
-            self.evaluated.as_secs_f64(),
-            grouped(self.rate() as u64)
+            "\n{total:.2} s, {} steps/s\n\
+             at the same time: reading and checking {prepared:.2} s, evaluating {evaluated:.2} s{written}\n",
+            grouped(self.rate(times) as u64)
         );
         if hint {
             text += "--out FILE writes every trace's rope, --events FILE every wrap and unwrap\n";
@@ -158,16 +157,19 @@ impl Summary {
         text
     }
 
-    pub(crate) fn json(&self) -> Value {
+    pub(crate) fn json(&self, times: &Times) -> Value {
         json!({
             "scene": {"name": self.scene, "walls": self.walls, "vertices": self.vertices, "dropped": self.dropped, "anchor": self.anchor},
             "engine": self.engine, "on": self.on, "version": env!("CARGO_PKG_VERSION"),
             "traces": self.traces, "steps": self.steps, "violations": self.violations,
             "wraps": self.wraps, "unwraps": self.unwraps,
-            "length": self.length.json(), "max_length": self.max_length.json(),
-            "depth": self.depth.json(), "max_depth": self.max_depth.json(),
-            "seconds": {"prepare": self.prepared.as_secs_f64(), "evaluate": self.evaluated.as_secs_f64()},
-            "steps_per_second": self.rate(),
+            "length": self.length.spread().json(), "max_length": self.max_length.spread().json(),
+            "depth": self.depth.spread().json(), "max_depth": self.max_depth.spread().json(),
+            "seconds": {
+                "prepare": times.prepared.as_secs_f64(), "evaluate": times.evaluated.as_secs_f64(),
+                "write": times.written.as_secs_f64(), "total": times.total.as_secs_f64(),
+            },
+            "steps_per_second": self.rate(times),
         })
     }
 }

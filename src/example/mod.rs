@@ -11,4 +11,4 @@ pub use built_in::{BuiltIn, NameError};
 pub use floor_plan::floor_plan;
 pub use lattice_walls::lattice_walls;
 pub use random_walls::random_walls;
-pub use walker::{Walker, settled_walks, walks};
+pub use walker::{Walker, settled_walks, some_walks, walks};

@@ -1,11 +1,13 @@
 //! Random walks that respect the walls.
 
+use std::ops::Range;
+
 use glam::DVec2;
 use rayon::prelude::*;
 
 use super::draws::Draws;
 use crate::scene::Model;
-use crate::trace::{SettledTrace, Trace, settle};
+use crate::trace::{SettledTrace, Trace, settle_owned};
 
 /// By how much the heading turns at most in one step, in radians.
 const TURN: f64 = 0.4;
@@ -27,14 +29,19 @@ pub struct Walker {
 ///
 /// A walker that finds no way on stays where it is for that step.
 pub fn walks(model: &Model, walker: Walker, count: u64) -> Vec<Trace> {
+    some_walks(model, walker, 0..count)
+}
+
+/// The traces of `walker` with these numbers, on all cores: [`walks`] part by part, for more than fit into memory.
+pub fn some_walks(model: &Model, walker: Walker, numbers: Range<u64>) -> Vec<Trace> {
     let bounds = model.bounds();
-    (0..count).into_par_iter().map(|id| walk(model, bounds, walker, id)).collect()
+    numbers.into_par_iter().map(|id| walk(model, bounds, walker, id)).collect()
 }
 
 /// The same traces, settled. Holds no trace twice, so that long ones in large numbers fit in memory.
 pub fn settled_walks(model: &Model, walker: Walker, count: u64) -> Vec<SettledTrace> {
     let bounds = model.bounds();
-    (0..count).into_par_iter().map(|id| settle(model, &walk(model, bounds, walker, id))).collect()
+    (0..count).into_par_iter().map(|id| settle_owned(model, walk(model, bounds, walker, id))).collect()
 }
 
 fn walk(model: &Model, (low, high): (DVec2, DVec2), walker: Walker, id: u64) -> Trace {

@@ -1,10 +1,12 @@
 //! Points and the exact signs that every decision rests on. Knows nothing of ropes.
 
+mod corners;
 mod limits;
 mod predicates;
 mod trace_point;
 
+pub use corners::{higher, lower};
 pub(crate) use limits::Shown;
-pub use limits::{COORDINATE_MAX, COORDINATE_MIN, CoordinateFault, check_point};
+pub use limits::{COORDINATE_MAX, COORDINATE_MIN, CoordinateFault, check_point, check_points};
 pub use predicates::{between, forwards, opposite, orient, same_side};
 pub use trace_point::{Hair, TracePoint, Turn, left_of, orient_step};

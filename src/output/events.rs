@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use super::columns::EventColumns;
 use super::rows::Rows;
-use super::{WholeFile, WriteError, text};
-use crate::rope::TraceRecord;
+use super::{CHUNK, WholeFile, WriteError, text};
+use crate::rope::{Event, TraceRecord};
 
 /// Writes the events of traces to a file that appears when it is finished.
 ///
@@ -36,22 +36,32 @@ impl EventWriter {
     ///
     /// If an event names a vertex that is not there.
     pub fn write(&mut self, vertices: &[DVec2], record: &TraceRecord) -> Result<(), WriteError> {
-        for event in &record.events {
-            let at = vertices[event.vertex as usize];
-            match &mut self.0 {
-                Rows::Jsonl(file) => {
-                    text::event_json(file, record.trace, event, at).map_err(|cause| file.error(cause))?;
-                }
-                Rows::Csv(file) => {
-                    text::event_csv(file, record.trace, event, at).map_err(|cause| file.error(cause))?;
-                }
-                Rows::Parquet(table) => {
-                    table.columns.push(record.trace, event, at);
-                    table.flush_if_full()?;
-                }
-            }
-        }
-        Ok(())
+        self.write_all(vertices, std::slice::from_ref(record))
+    }
+
+    /// Adds the events of traces; the bytes are the same as one by one. Text is made on all cores and held until it is
+    /// written.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`write`](Self::write).
+    ///
+    /// # Panics
+    ///
+    /// If an event names a vertex that is not there.
+    pub fn write_all(&mut self, vertices: &[DVec2], records: &[TraceRecord]) -> Result<(), WriteError> {
+        let at = |event: &Event| vertices[event.vertex as usize];
+        self.0.write_all(
+            records,
+            |text, r| r.events.iter().try_for_each(|e| text::event_json(text, r.trace, e, at(e))),
+            |text, r| r.events.iter().try_for_each(|e| text::event_csv(text, r.trace, e, at(e))),
+            |table, r| {
+                r.events.iter().try_for_each(|e| {
+                    table.columns.push(r.trace, e, at(e));
+                    table.flush_if_full()
+                })
+            },
+        )
     }
 
     /// Puts the file in its place.
@@ -85,14 +95,14 @@ impl EventWriter {
 /// If an event names a vertex that is not there.
 pub fn write_events(path: &Path, vertices: &[DVec2], records: &[TraceRecord]) -> Result<(), WriteError> {
     let mut writer = EventWriter::create(path)?;
-    records.iter().try_for_each(|record| writer.write(vertices, record))?;
+    records.chunks(CHUNK).try_for_each(|records| writer.write_all(vertices, records))?;
     writer.finish()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rope::{Event, EventKind, Side, Status};
+    use crate::rope::{EventKind, Side, Status};
 
     #[test]
     fn rows_have_the_documented_form() {

@@ -22,6 +22,9 @@ pub use write_error::WriteError;
 
 use crate::read_error::extension;
 
+/// How many records are written at a time where all are there: enough for all cores.
+const CHUNK: usize = 1024;
+
 /// How rows are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Format {

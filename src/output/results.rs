@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::columns::ResultColumns;
 use super::rows::Rows;
-use super::{WholeFile, WriteError, text};
+use super::{CHUNK, WholeFile, WriteError, text};
 use crate::rope::TraceRecord;
 
 /// Writes results one by one to a file that appears when it is finished.
@@ -35,14 +35,19 @@ impl ResultWriter {
     ///
     /// What the operating system says; the file cannot be finished after that.
     pub fn write(&mut self, record: &TraceRecord) -> Result<(), WriteError> {
-        match &mut self.0 {
-            Rows::Jsonl(file) => text::result_json(file, record).map_err(|cause| file.error(cause)),
-            Rows::Csv(file) => text::result_csv(file, record).map_err(|cause| file.error(cause)),
-            Rows::Parquet(table) => {
-                table.columns.push(record);
-                table.flush_if_full()
-            }
-        }
+        self.write_all(std::slice::from_ref(record))
+    }
+
+    /// Adds results; the bytes are the same as one by one. Text is made on all cores and held until it is written.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`write`](Self::write).
+    pub fn write_all(&mut self, records: &[TraceRecord]) -> Result<(), WriteError> {
+        self.0.write_all(records, text::result_json, text::result_csv, |table, record| {
+            table.columns.push(record);
+            table.flush_if_full()
+        })
     }
 
     /// Puts the file in its place.
@@ -72,7 +77,7 @@ impl ResultWriter {
 /// Those of [`check_output`](super::check_output), and what the operating system says.
 pub fn write_results(path: &Path, records: &[TraceRecord]) -> Result<(), WriteError> {
     let mut writer = ResultWriter::create(path)?;
-    records.iter().try_for_each(|record| writer.write(record))?;
+    records.chunks(CHUNK).try_for_each(|records| writer.write_all(records))?;
     writer.finish()
 }
 

@@ -1,6 +1,7 @@
 //! What the user brings as the plane: walls, their ends, and the anchor.
 
 mod geojson;
+mod grid;
 mod index;
 mod model;
 mod movingai;

@@ -1,11 +1,12 @@
 //! A scene made ready to be evaluated: what never changes while traces come and go.
 
 use std::collections::HashMap;
+use std::ops::ControlFlow::{Break, Continue};
 
 use glam::DVec2;
 
 use super::{Scene, WallIndex};
-use crate::geometry::{CoordinateFault, Shown, between, check_point, forwards, orient, same_side};
+use crate::geometry::{CoordinateFault, Shown, between, check_point, forwards, higher, lower, orient, same_side};
 
 /// Why a rope cannot be tied where the anchor is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -82,16 +83,18 @@ impl Model {
     }
 
     /// Whether the segment from `a` to `b` touches no wall at all, its ends included. A wall that ends at `a` is none in the
-    /// way unless the segment runs along it, so that one can leave a wall's end. O(log walls + walls near it).
+    /// way unless the segment runs along it, so that one can leave a wall's end. O(1) where no wall is near,
+    /// else O(log walls + walls near it).
     pub fn is_clear(&self, a: DVec2, b: DVec2) -> bool {
-        self.index.near(a.min(b), a.max(b)).all(|wall| {
-            let [u, v] = self.scene.ends(wall as usize);
+        let touches = |u: DVec2, v: DVec2| {
             if let Some(end) = [(u, v), (v, u)].iter().find(|e| e.0 == a).map(|e| e.1) {
-                return orient(a, end, b) != 0.0 || forwards(end, a, b);
+                return orient(a, end, b) == 0.0 && !forwards(end, a, b);
             }
             // All on one line: the boxes meet, so the segments do.
-            same_side(orient(u, v, a), orient(u, v, b)) || same_side(orient(a, b, u), orient(a, b, v))
-        })
+            !same_side(orient(u, v, a), orient(u, v, b)) && !same_side(orient(a, b, u), orient(a, b, v))
+        };
+        let visit = |_, [u, v]: [DVec2; 2]| if touches(u, v) { Break(()) } else { Continue(()) };
+        self.index.visit(lower(a, b), higher(a, b), visit).is_continue()
     }
 
     /// The lowest and highest x and y of all vertices and the anchor.

@@ -1,64 +1,206 @@
 //! Traces as CSV: a header `trace,x,y` and one row a point.
+//!
+//! Lines without quotes need no parser: they end at line ends and their fields at commas. They are read in blocks, whose
+//! pieces are read in parallel. From the first block with a quote on (or with line ends of old Macs), the crate `csv`
+//! reads the rest, record by record.
 
-use std::io::{BufRead, BufReader, Read, Seek};
-use std::path::Path;
+use std::io::{Chain, Cursor, Read, Seek};
+use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
+use rayon::prelude::*;
 
-use super::Trace;
-use super::read::Gatherer;
+use super::csv_lines::{first_line, is_plain, line_at, pieces, whole_lines};
+use super::csv_rows::{Chunk, Header};
+use super::gather::Gatherer;
 use crate::read_error::{Fault, Place, ReadError};
+
+/// How many bytes are read at a time: some pieces for every thread.
+const BLOCK: usize = 1 << 22;
 
 /// The parser's buffer in bytes; large enough that reading costs little next to parsing.
 const BUFFER: usize = 1 << 18;
 
-const COLUMNS: [&str; 3] = ["trace", "x", "y"];
+/// How many records the parser reads at a time.
+const RECORDS: usize = 1 << 14;
 
-/// Reads the whole of `input`, the file at `path`.
-pub(super) fn parse<R: Read + Seek>(input: R, path: &Path) -> Result<Vec<Trace>, ReadError> {
-    let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).buffer_capacity(BUFFER).from_reader(input);
-    gather(&mut reader).or_else(|stop| {
-        let (byte, what) = match stop {
-            Stop::Io(cause) => return Err(ReadError::io(path, cause)),
-            Stop::Fault { byte, what } => (byte, what),
-        };
-        let line = line_at(reader.into_inner(), byte).map_err(|cause| ReadError::io(path, cause))?;
-        Err(Fault::new(Place::line(line), what).in_file(path))
-    })
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// The rows of a file under way.
+pub(super) struct CsvRows<R> {
+    input: Input<R>,
+    header: Option<Header>,
+    /// Where in the file the block or the parser's text starts.
+    start: u64,
+    size: u64,
+    position: u64,
+    /// How many bytes are read at a time.
+    block: usize,
+    path: PathBuf,
+}
+
+/// The parser over the block with the first quote and all that follows.
+type Parser<R> = Reader<Chain<Cursor<Vec<u8>>, R>>;
+
+enum Input<R> {
+    /// Blocks of lines; with the start of the next block.
+    Blocks(R, Vec<u8>),
+    Parser(Box<Parser<R>>),
+    /// After the end or an error.
+    Ended,
 }
 
 /// Why reading stopped early.
 enum Stop {
     Io(std::io::Error),
-    /// A fault in the row that starts at `byte`.
+    /// A fault in the row that starts `byte` bytes after the start of the block or of the parser's text.
     Fault {
         byte: u64,
         what: String,
     },
 }
 
-fn gather(reader: &mut Reader<impl Read>) -> Result<Vec<Trace>, Stop> {
-    let mut record = ByteRecord::new();
-    if !next(reader, &mut record)? {
-        let what = "the file is empty; its first line must be the header trace,x,y".into();
-        return Err(Stop::Fault { byte: 0, what });
+impl From<std::io::Error> for Stop {
+    fn from(cause: std::io::Error) -> Self {
+        Stop::Io(cause)
     }
-    let fault = |record: &ByteRecord, what| Stop::Fault { byte: record.position().map_or(0, |p| p.byte()), what };
-    let header = header(&record).map_err(|what| fault(&record, what))?;
-    let width = record.len();
-    let mut gatherer = Gatherer::default();
-    while next(reader, &mut record)? {
-        if record.len() != width {
-            let what = format!("{} fields; the header has {width}", record.len());
-            return Err(fault(&record, what));
-        }
-        row(&record, header, &mut gatherer).map_err(|what| fault(&record, what))?;
-    }
-    Ok(gatherer.finish())
 }
 
-fn next(reader: &mut Reader<impl Read>, record: &mut ByteRecord) -> Result<bool, Stop> {
-    reader.read_byte_record(record).map_err(|e| {
+impl From<(u64, String)> for Stop {
+    fn from((byte, what): (u64, String)) -> Self {
+        Stop::Fault { byte, what }
+    }
+}
+
+const EMPTY: &str = "the file is empty; its first line must be the header trace,x,y";
+
+impl<R: Read + Seek> CsvRows<R> {
+    /// The rows of `input`, the file of `size` bytes at `path`.
+    pub(super) fn new(input: R, size: u64, path: &Path) -> Self {
+        let input = Input::Blocks(input, Vec::new());
+        CsvRows { input, header: None, start: 0, size, position: 0, block: BLOCK, path: path.into() }
+    }
+
+    /// The same rows, read in blocks of about `block` bytes.
+    #[cfg(test)]
+    pub(super) fn in_blocks(self, block: usize) -> Self {
+        CsvRows { block, ..self }
+    }
+
+    /// How many bytes the file has.
+    pub(super) fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// How many of them have been read.
+    pub(super) fn position(&self) -> u64 {
+        self.position
+    }
+
+    /// Reads the next rows; false when there are no more.
+    pub(super) fn read(&mut self, gatherer: &mut Gatherer) -> Result<bool, ReadError> {
+        match std::mem::replace(&mut self.input, Input::Ended) {
+            Input::Blocks(input, rest) => self.read_block(input, rest, gatherer),
+            Input::Parser(parser) => self.read_records(parser, gatherer),
+            Input::Ended => Ok(false),
+        }
+    }
+
+    fn read_block(&mut self, mut input: R, rest: Vec<u8>, gatherer: &mut Gatherer) -> Result<bool, ReadError> {
+        let (block, rest, ended) =
+            whole_lines(&mut input, rest, self.block).map_err(|cause| ReadError::io(&self.path, cause))?;
+        if !is_plain(&block) {
+            // The parser takes a byte order mark at its start for one of the file; a line end before it is skipped.
+            let lead: &[u8] = if self.start == 0 { b"" } else { b"\n" };
+            self.start -= lead.len() as u64;
+            let text = Cursor::new([lead, &block, &rest].concat()).chain(input);
+            let mut builder = ReaderBuilder::new();
+            let parser = builder.has_headers(false).flexible(true).buffer_capacity(BUFFER).from_reader(text);
+            self.input = Input::Parser(Box::new(parser));
+            return Ok(true);
+        }
+        if let Err(stop) = self.parse_block(&block, ended, gatherer) {
+            return Err(self.error(input, stop));
+        }
+        self.start += block.len() as u64;
+        self.position = self.start;
+        if !ended {
+            self.input = Input::Blocks(input, rest);
+        }
+        Ok(!ended)
+    }
+
+    fn parse_block(&mut self, block: &[u8], ended: bool, gatherer: &mut Gatherer) -> Result<(), Stop> {
+        let mut rows = block;
+        if self.start == 0 {
+            rows = rows.strip_prefix(BYTE_ORDER_MARK).unwrap_or(rows);
+        }
+        while self.header.is_none() && !rows.is_empty() {
+            let byte = (block.len() - rows.len()) as u64;
+            let line;
+            (line, rows) = first_line(rows);
+            if !line.is_empty() {
+                self.header = Some(Header::new(line.split(|&b| b == b',')).map_err(|what| (byte, what))?);
+            }
+        }
+        let Some(header) = &self.header else {
+            return if ended { Err((0, EMPTY.to_owned()).into()) } else { Ok(()) };
+        };
+        let pieces = pieces(rows, block.len() - rows.len());
+        let chunks: Vec<Chunk> =
+            pieces.into_par_iter().map(|(start, lines)| Chunk::of_lines(lines, start, header)).collect();
+        Ok(chunks.into_iter().try_for_each(|chunk| chunk.gather(gatherer))?)
+    }
+
+    fn read_records(&mut self, mut parser: Box<Parser<R>>, gatherer: &mut Gatherer) -> Result<bool, ReadError> {
+        match self.parse_records(&mut parser, gatherer) {
+            Ok(more) => {
+                self.position = self.start + parser.position().byte();
+                if more {
+                    self.input = Input::Parser(parser);
+                }
+                Ok(more)
+            }
+            Err(stop) => Err(self.error(parser.into_inner().into_inner().1, stop)),
+        }
+    }
+
+    fn parse_records(&mut self, parser: &mut Parser<R>, gatherer: &mut Gatherer) -> Result<bool, Stop> {
+        let mut record = ByteRecord::new();
+        let byte = |record: &ByteRecord| record.position().map_or(0, |p| p.byte());
+        if self.header.is_none() {
+            if !next(parser, &mut record)? {
+                return Err((0, EMPTY.to_owned()).into());
+            }
+            self.header = Some(Header::new(record.iter()).map_err(|what| (byte(&record), what))?);
+        }
+        let header = self.header.as_ref().expect("it has been read");
+        let mut chunk = Chunk::default();
+        let mut more = Ok(true);
+        while chunk.len() < RECORDS && chunk.is_sound() && matches!(more, Ok(true)) {
+            more = next(parser, &mut record);
+            if let Ok(true) = more {
+                chunk.push(byte(&record), header.row(record.iter().map(String::from_utf8_lossy)));
+            }
+        }
+        chunk.gather(gatherer)?;
+        more
+    }
+
+    fn error(&self, input: R, stop: Stop) -> ReadError {
+        let (byte, what) = match stop {
+            Stop::Io(cause) => return ReadError::io(&self.path, cause),
+            Stop::Fault { byte, what } => (byte, what),
+        };
+        match line_at(input, self.start + byte) {
+            Ok(line) => Fault::new(Place::line(line), what).in_file(&self.path),
+            Err(cause) => ReadError::io(&self.path, cause),
+        }
+    }
+}
+
+fn next(parser: &mut Reader<impl Read>, record: &mut ByteRecord) -> Result<bool, Stop> {
+    parser.read_byte_record(record).map_err(|e| {
         let byte = e.position().map_or(0, |p| p.byte());
         match e.into_kind() {
             ErrorKind::Io(cause) => Stop::Io(cause),
@@ -67,77 +209,30 @@ fn next(reader: &mut Reader<impl Read>, record: &mut ByteRecord) -> Result<bool,
     })
 }
 
-/// The fields in which trace, x and y stand.
-fn header(record: &ByteRecord) -> Result<[usize; 3], String> {
-    let found: Vec<_> = record.iter().map(|name| String::from_utf8_lossy(name.trim_ascii())).collect();
-    let mut fields = [0; 3];
-    for (field, column) in fields.iter_mut().zip(COLUMNS) {
-        let mut at = (0..found.len()).filter(|&i| found[i] == column);
-        *field = match (at.next(), at.next()) {
-            (Some(i), None) => i,
-            (first, _) => {
-                let fault = if first.is_some() { "two columns" } else { "no column" };
-                let names = excerpt(&found.join(","));
-                return Err(format!("{fault} {column} in the header {names}; it must name trace, x and y, once each"));
-            }
-        };
-    }
-    Ok(fields)
-}
-
-fn row(record: &ByteRecord, [trace, x, y]: [usize; 3], gatherer: &mut Gatherer) -> Result<(), String> {
-    let id = number(&record[trace], "trace", "a whole number from 0")?;
-    let coordinate = |field, column| number(&record[field], column, "a number such as -1.25 or 3e-7");
-    gatherer.push(id, coordinate(x, "x")?, coordinate(y, "y")?)
-}
-
-fn number<T: std::str::FromStr>(field: &[u8], column: &str, right: &str) -> Result<T, String> {
-    let text = std::str::from_utf8(field.trim_ascii()).ok();
-    text.and_then(|text| text.parse().ok()).ok_or_else(|| {
-        let found = excerpt(&String::from_utf8_lossy(field));
-        format!("column {column}: {found} is not {right}")
-    })
-}
-
-/// `text` in quotes, cut where it is too long for a message.
-fn excerpt(text: &str) -> String {
-    let start: String = text.chars().take(60).collect();
-    if start.len() < text.len() { format!("{start:?}...") } else { format!("{start:?}") }
-}
-
-/// The line (from 1) of the first row at or after `byte`.
-///
-/// The parser's own line numbers are off where a row follows an empty line or a line that ends with CR LF, because it
-/// takes those line ends as part of the next row. Counting anew is exact, and is done for errors only.
-fn line_at(mut input: impl Read + Seek, byte: u64) -> std::io::Result<u64> {
-    input.rewind()?;
-    let mut input = BufReader::with_capacity(BUFFER, input);
-    let (mut line, mut at) = (1, 0);
-    loop {
-        let buffer = input.fill_buf()?;
-        if buffer.is_empty() {
-            return Ok(line);
-        }
-        for &b in buffer {
-            if at >= byte && !matches!(b, b'\r' | b'\n') {
-                return Ok(line);
-            }
-            line += u64::from(b == b'\n');
-            at += 1;
-        }
-        let read = buffer.len();
-        input.consume(read);
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
+    use proptest::prelude::*;
 
     use super::*;
+    use crate::trace::Trace;
+
+    fn read_in_blocks(text: &[u8], block: usize) -> Result<Vec<Trace>, String> {
+        let mut gatherer = Gatherer::default();
+        let mut rows = CsvRows::new(Cursor::new(text), text.len() as u64, Path::new("t.csv")).in_blocks(block);
+        while rows.read(&mut gatherer).map_err(|e| e.to_string())? {}
+        assert_eq!(rows.position(), rows.size());
+        Ok(gatherer.take(usize::MAX, usize::MAX, true).unwrap_or_default())
+    }
 
     fn read(text: impl AsRef<[u8]>) -> Result<Vec<Trace>, String> {
-        parse(Cursor::new(text.as_ref().to_vec()), Path::new("t.csv")).map_err(|e| e.to_string())
+        let text = text.as_ref();
+        let all = read_in_blocks(text, BLOCK);
+        if text.len() < 1000 {
+            for block in [1, 5, 40] {
+                assert_eq!(read_in_blocks(text, block), all);
+            }
+        }
+        all
     }
 
     fn shape(traces: &[Trace]) -> Vec<(u64, Vec<[f64; 2]>)> {
@@ -224,5 +319,26 @@ mod tests {
     fn lines_are_right_far_into_the_file() {
         let text = format!("trace,x,y\r\n{}0,x,0\r\n", "0,0.5,0.5\r\n".repeat(100_000));
         assert!(read(text).unwrap_err().starts_with("t.csv: line 100002: column x"));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Whatever a file holds, its lines are read as the parser reads them.
+        #[test]
+        fn lines_are_read_as_by_the_parser(
+            parts in prop::collection::vec(prop::sample::select(vec![
+                "0", "1", "2.5", ",", ",", ",", "\n", "\n", "\r\n", "\r", " ", "x", "\"", "\"\"", "\u{feff}", "0,1,2\n",
+                "1,1,1\r\n", "\"1\",2,3\n", "2,-1e-7,nan\n",
+            ]), 0..40),
+            start in prop::sample::select(vec!["trace,x,y\n", "\u{feff}trace,x,y\r\n", "x,trace,y,n\n"]),
+            block in 1..50usize,
+        ) {
+            let text = format!("{start}{}", parts.concat());
+            let lines = read_in_blocks(text.as_bytes(), block);
+            // A quoted field in front changes nothing but makes the parser read all.
+            let quoted = text.replacen("trace", "\"trace\"", 1);
+            prop_assert_eq!(lines, read_in_blocks(quoted.as_bytes(), BLOCK));
+        }
     }
 }

@@ -3,16 +3,22 @@
 mod caught;
 mod corner;
 mod csv_file;
+mod csv_lines;
+mod csv_rows;
+mod gather;
 mod parquet_file;
+mod pluck;
 mod read;
 mod settle;
+#[cfg(test)]
+mod settle_truth;
 mod settled;
 mod slide;
 
 use glam::DVec2;
 
-pub use read::read_traces;
-pub use settle::settle;
+pub use read::{TraceReader, read_traces};
+pub use settle::{settle, settle_owned};
 pub use settled::{SettledTrace, Violation, ViolationKind};
 
 /// One trace: its number and its points, in the scene's frame and unit.

@@ -1,46 +1,70 @@
 //! Traces as Parquet: columns `trace`, `x` and `y`, one row a point.
 
+use std::borrow::Cow;
 use std::fs::File;
-use std::path::Path;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::{Float64Type, Int32Type, Int64Type, UInt32Type, UInt64Type};
 use arrow_array::{Array, ArrayRef, ArrowPrimitiveType, PrimitiveArray, RecordBatch};
 use arrow_schema::{DataType, Schema};
+use glam::DVec2;
 use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
 
-use super::Trace;
 use super::caught::caught;
-use super::read::Gatherer;
-use crate::read_error::{Fault, Place, ReadError};
+use super::gather::Gatherer;
+use crate::read_error::{Fault, Place};
 
-/// Rows that are decoded at a time.
-const BATCH: usize = 1 << 16;
+/// Rows that are decoded at a time: few enough that their memory is used again and stays in the cache.
+const BATCH: usize = 1 << 13;
 
 const COLUMNS: [&str; 3] = ["trace", "x", "y"];
 
-/// Reads the whole of `file`, the file at `path`.
-pub(super) fn parse(file: File, path: &Path) -> Result<Vec<Trace>, ReadError> {
-    let traces = caught(|| gather(file)).unwrap_or_else(|panic| Err(damaged(Place::default(), panic)));
-    traces.map_err(|fault| fault.in_file(path))
+/// The rows of a file under way.
+pub(super) struct ParquetRows {
+    batches: ParquetRecordBatchReader,
+    rows: u64,
+    read: u64,
 }
 
-fn gather(file: File) -> Result<Vec<Trace>, Fault> {
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| damaged(Place::default(), e))?;
-    let columns = columns(builder.schema()).map_err(|what| Fault::new(Place::default(), what))?;
-    let mask = ProjectionMask::roots(builder.parquet_schema(), columns);
-    let batches =
-        builder.with_projection(mask).with_batch_size(BATCH).build().map_err(|e| damaged(Place::default(), e))?;
-
-    let mut gatherer = Gatherer::default();
-    let mut first_row = 0;
-    for batch in batches {
-        let batch = batch.map_err(|e| damaged(Place::row(first_row), e))?;
-        rows(&batch, &mut gatherer).map_err(|(row, what)| Fault::new(Place::row(first_row + row as u64), what))?;
-        first_row += batch.num_rows() as u64;
+impl ParquetRows {
+    /// Reads the schema of `file`.
+    pub(super) fn open(file: File) -> Result<Self, Fault> {
+        let open = || {
+            let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| damaged(Place::default(), e))?;
+            let columns = columns(builder.schema()).map_err(|what| Fault::new(Place::default(), what))?;
+            let mask = ProjectionMask::roots(builder.parquet_schema(), columns);
+            let rows = builder.metadata().file_metadata().num_rows().try_into().unwrap_or(0);
+            let builder = builder.with_projection(mask).with_batch_size(BATCH);
+            let batches = builder.build().map_err(|e| damaged(Place::default(), e))?;
+            Ok(ParquetRows { batches, rows, read: 0 })
+        };
+        caught(open).unwrap_or_else(|panic| Err(damaged(Place::default(), panic)))
     }
-    Ok(gatherer.finish())
+
+    /// Reads the next rows; false when there are no more. Not to be called after an error.
+    pub(super) fn read(&mut self, gatherer: &mut Gatherer) -> Result<bool, Fault> {
+        let first = self.read;
+        let mut read = || {
+            let Some(batch) = self.batches.next() else { return Ok(0) };
+            let batch = batch.map_err(|e| damaged(Place::row(first), e))?;
+            rows(&batch, gatherer).map_err(|(row, what)| Fault::new(Place::row(first + row as u64), what))?;
+            Ok(batch.num_rows())
+        };
+        let count = caught(&mut read).unwrap_or_else(|panic| Err(damaged(Place::default(), panic)))?;
+        self.read += count as u64;
+        Ok(count > 0)
+    }
+
+    /// How many rows the file has, as it says.
+    pub(super) fn size(&self) -> u64 {
+        self.rows
+    }
+
+    /// How many rows have been read.
+    pub(super) fn position(&self) -> u64 {
+        self.read
+    }
 }
 
 fn damaged(place: Place, e: impl std::fmt::Display) -> Fault {
@@ -88,15 +112,13 @@ fn rows(batch: &RecordBatch, gatherer: &mut Gatherer) -> Result<(), (usize, Stri
     if array.null_count() > 0 {
         first_null("trace", array)?;
     }
-    for (row, ((&id, &x), &y)) in ids.iter().zip(x.values()).zip(y.values()).enumerate() {
-        gatherer.push(id, x, y).map_err(|what| (row, what))?;
-    }
-    Ok(())
+    let (x, y) = (x.values(), y.values());
+    gatherer.extend(&ids, |rows| x[rows.clone()].iter().zip(&y[rows]).map(|(&x, &y)| DVec2::new(x, y)))
 }
 
 /// The traces' numbers; what stands in null rows is of no matter.
-fn ids(array: &ArrayRef) -> Result<Vec<u64>, (usize, String)> {
-    fn widen<T: ArrowPrimitiveType>(array: &PrimitiveArray<T>) -> Result<Vec<u64>, (usize, String)>
+fn ids(array: &ArrayRef) -> Result<Cow<'_, [u64]>, (usize, String)> {
+    fn widen<T: ArrowPrimitiveType>(array: &PrimitiveArray<T>) -> Result<Cow<'_, [u64]>, (usize, String)>
     where
         T::Native: TryInto<u64> + Copy + std::fmt::Display,
     {
@@ -104,25 +126,26 @@ fn ids(array: &ArrayRef) -> Result<Vec<u64>, (usize, String)> {
             Ok(id) => Ok(id),
             Err(_) => Err((row, format!("column trace: {id} is not a whole number from 0"))),
         };
-        array.values().iter().enumerate().map(wide).collect()
+        array.values().iter().enumerate().map(wide).collect::<Result<Vec<u64>, _>>().map(Cow::Owned)
     }
     match array.data_type() {
         DataType::UInt32 => widen(array.as_primitive::<UInt32Type>()),
         DataType::Int32 => widen(array.as_primitive::<Int32Type>()),
         DataType::Int64 => widen(array.as_primitive::<Int64Type>()),
-        _ => widen(array.as_primitive::<UInt64Type>()),
+        _ => Ok(Cow::Borrowed(array.as_primitive::<UInt64Type>().values())),
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
     use std::sync::Arc;
 
     use arrow_array::{Float32Array, Float64Array, Int32Array, Int64Array, StringArray, UInt32Array, UInt64Array};
-    use glam::DVec2;
     use parquet::arrow::ArrowWriter;
 
     use super::*;
+    use crate::trace::Trace;
 
     fn bytes(columns: Vec<(&str, ArrayRef)>) -> Vec<u8> {
         let batch = RecordBatch::try_from_iter(columns).unwrap();
@@ -134,7 +157,15 @@ mod tests {
     fn read(bytes: &[u8]) -> Result<Vec<Trace>, String> {
         let mut file = tempfile::tempfile().unwrap();
         std::io::Write::write_all(&mut file, bytes).unwrap();
-        parse(file, Path::new("t.parquet")).map_err(|e| e.to_string())
+        let path = Path::new("t.parquet");
+        let mut gatherer = Gatherer::default();
+        let read = || {
+            let mut rows = ParquetRows::open(file)?;
+            while rows.read(&mut gatherer)? {}
+            Ok(())
+        };
+        read().map_err(|fault: Fault| fault.in_file(path).to_string())?;
+        Ok(gatherer.take(usize::MAX, usize::MAX, true).unwrap_or_default())
     }
 
     fn f64s(values: &[f64]) -> ArrayRef {

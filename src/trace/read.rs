@@ -1,12 +1,12 @@
-//! Reads traces from a file, in the format that its extension names.
+//! Reads traces from a file, in the format that its extension names: in batches as they come, or all at once.
 
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use glam::DVec2;
-
-use super::{Trace, csv_file, parquet_file};
-use crate::geometry::check_point;
+use super::Trace;
+use super::csv_file::CsvRows;
+use super::gather::Gatherer;
+use super::parquet_file::ParquetRows;
 use crate::read_error::{ReadError, extension};
 
 /// Reads the traces in `path`: columns `trace` (a whole number from 0), `x` and `y`, as `.csv` or `.parquet`.
@@ -19,78 +19,108 @@ use crate::read_error::{ReadError, extension};
 /// A file that cannot be opened, an extension of another format, and contents that are not traces, with their line
 /// (from 1) or row (from 0).
 pub fn read_traces(path: &Path) -> Result<Vec<Trace>, ReadError> {
-    let parse = match extension(path).as_str() {
-        "csv" => csv_file::parse,
-        "parquet" => parquet_file::parse,
-        _ => {
+    let mut reader = TraceReader::open(path)?;
+    Ok(reader.next_batch(usize::MAX, usize::MAX)?.unwrap_or_default())
+}
+
+/// Reads a file of traces batch by batch, so that it need not fit into memory. What files hold is said at
+/// [`read_traces`].
+///
+/// ```no_run
+/// use tautline::trace::TraceReader;
+/// let mut reader = TraceReader::open("drags.parquet".as_ref())?;
+/// while let Some(traces) = reader.next_batch(1000, 1_000_000)? {
+///     println!("{} traces", traces.len());
+/// }
+/// # Ok::<(), tautline::ReadError>(())
+/// ```
+pub struct TraceReader {
+    path: PathBuf,
+    rows: Rows,
+    gatherer: Gatherer,
+    ended: bool,
+}
+
+/// A file of rows, by its format.
+enum Rows {
+    Csv(Box<CsvRows<File>>),
+    Parquet(ParquetRows),
+}
+
+impl TraceReader {
+    /// Opens the file at `path`. Parquet is read as far as its schema, CSV not at all.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be opened, an extension of another format, and columns that do not fit.
+    pub fn open(path: &Path) -> Result<Self, ReadError> {
+        let format = extension(path);
+        if !["csv", "parquet"].contains(&format.as_str()) {
             let extensions = &[".csv", ".parquet"];
             return Err(ReadError::Extension { path: path.into(), what: "traces", extensions });
         }
-    };
-    let file = File::open(path).map_err(|cause| ReadError::io(path, cause))?;
-    // A folder opens like a file and fails later, where a decoder would take it for damage.
-    if path.is_dir() {
-        return Err(ReadError::io(path, std::io::ErrorKind::IsADirectory.into()));
-    }
-    parse(file, path)
-}
-
-/// Gathers rows into traces.
-#[derive(Default)]
-pub(super) struct Gatherer {
-    traces: Vec<Trace>,
-}
-
-impl Gatherer {
-    /// Adds the point of the next row.
-    pub(super) fn push(&mut self, id: u64, x: f64, y: f64) -> Result<(), String> {
-        let point = check_point(DVec2::new(x, y)).map_err(|fault| {
-            // The fault tells the number; which of the two columns holds it must be said here.
-            let column = if check_point(DVec2::new(x, 0.0)).is_err() { "x" } else { "y" };
-            format!("column {column}: {fault}")
-        })?;
-        let capacity = match self.traces.last_mut() {
-            Some(last) if last.id == id => {
-                last.points.push(point);
-                return Ok(());
-            }
-            Some(last) if last.id > id => {
-                let rule = "the rows of one trace must follow each other, and the numbers increase";
-                return Err(format!("trace {id} after trace {}; {rule}", last.id));
-            }
-            // Traces of one file tend to be equally long.
-            Some(last) => last.points.len(),
-            None => 0,
+        let file = File::open(path).map_err(|cause| ReadError::io(path, cause))?;
+        // A folder opens like a file and fails later, where a decoder would take it for damage.
+        if path.is_dir() {
+            return Err(ReadError::io(path, std::io::ErrorKind::IsADirectory.into()));
+        }
+        let rows = if format == "csv" {
+            let size = file.metadata().map_or(0, |m| m.len());
+            Rows::Csv(Box::new(CsvRows::new(file, size, path)))
+        } else {
+            Rows::Parquet(ParquetRows::open(file).map_err(|fault| fault.in_file(path))?)
         };
-        let mut points = Vec::with_capacity(capacity);
-        points.push(point);
-        self.traces.push(Trace { id, points });
-        Ok(())
+        Ok(TraceReader { path: path.into(), rows, gatherer: Gatherer::default(), ended: false })
     }
 
-    pub(super) fn finish(self) -> Vec<Trace> {
-        self.traces
+    /// The next whole traces, at least one: at most `traces`, with at most `points` points together unless the first has
+    /// more by itself. `None` when there are no more, and after an error.
+    ///
+    /// Memory is bounded by the batch, its longest trace and some megabytes.
+    ///
+    /// # Errors
+    ///
+    /// Contents that are not traces, with their line or row, and what the operating system says.
+    pub fn next_batch(&mut self, traces: usize, points: usize) -> Result<Option<Vec<Trace>>, ReadError> {
+        while !self.ended && !self.gatherer.is_full(traces, points) {
+            let more = match &mut self.rows {
+                Rows::Csv(rows) => rows.read(&mut self.gatherer),
+                Rows::Parquet(rows) => rows.read(&mut self.gatherer).map_err(|fault| fault.in_file(&self.path)),
+            };
+            if more.is_err() {
+                self.gatherer = Gatherer::default();
+            }
+            self.ended = !matches!(more, Ok(true));
+            more?;
+        }
+        Ok(self.gatherer.take(traces, points, self.ended))
+    }
+
+    /// How large the file is: rows for Parquet, bytes for CSV (0 for a pipe).
+    pub fn size(&self) -> u64 {
+        match &self.rows {
+            Rows::Csv(rows) => rows.size(),
+            Rows::Parquet(rows) => rows.size(),
+        }
+    }
+
+    /// How much of the [size](Self::size) has been read.
+    pub fn position(&self) -> u64 {
+        match &self.rows {
+            Rows::Csv(rows) => rows.position(),
+            Rows::Parquet(rows) => rows.position(),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::sync::Arc;
 
-    #[test]
-    fn rows_are_gathered_by_number() {
-        let mut gatherer = Gatherer::default();
-        for (id, x) in [(0, 1.0), (0, -0.0), (7, 3.0)] {
-            gatherer.push(id, x, 0.5).unwrap();
-        }
-        let e = gatherer.push(0, 1.0, 1.0).unwrap_err();
-        assert_eq!(e, "trace 0 after trace 7; the rows of one trace must follow each other, and the numbers increase");
-        assert_eq!(gatherer.push(7, 1.0, f64::NAN).unwrap_err(), "column y: NaN is not a finite number");
-        assert_eq!(gatherer.push(7, f64::NAN, 1.0).unwrap_err(), "column x: NaN is not a finite number");
-        let traces = gatherer.finish();
-        assert_eq!(traces.iter().map(|t| (t.id, t.points.len())).collect::<Vec<_>>(), [(0, 2), (7, 1)]);
-        assert_eq!(traces[0].points[1].x.to_bits(), 0);
-    }
+    use arrow_array::{ArrayRef, Float64Array, RecordBatch, UInt64Array};
+    use parquet::arrow::ArrowWriter;
+
+    use super::*;
 
     #[test]
     fn other_extensions_are_told_what_is_read() {
@@ -101,5 +131,71 @@ mod tests {
         let folder = tempfile::Builder::new().suffix(".parquet").tempdir().unwrap();
         let e = read_traces(folder.path()).unwrap_err().to_string();
         assert_eq!(e, format!("cannot read {}: is a directory", folder.path().display()));
+    }
+
+    /// 100,000 traces of 1 to 9 points, as CSV (with a quote in the middle of it, if asked for) and as Parquet.
+    fn traces(folder: &Path, quoted: bool) -> [PathBuf; 2] {
+        let ids: Vec<u64> = (0..100_000).flat_map(|id| std::iter::repeat_n(2 * id, 1 + id as usize % 9)).collect();
+        let mut text = "trace,x,y\n".to_owned();
+        for (row, id) in ids.iter().enumerate() {
+            let quote = if quoted && row == ids.len() / 2 { "\"" } else { "" };
+            text += &format!("{quote}{id}{quote},0.5,1\n");
+        }
+        let paths = ["t.csv", "t.parquet"].map(|name| folder.join(name));
+        std::fs::write(&paths[0], text).unwrap();
+        let rows = ids.len();
+        let columns: [(&str, ArrayRef); 3] = [
+            ("trace", Arc::new(UInt64Array::from(ids))),
+            ("x", Arc::new(Float64Array::from(vec![0.5; rows]))),
+            ("y", Arc::new(Float64Array::from(vec![1.0; rows]))),
+        ];
+        let batch = RecordBatch::try_from_iter(columns).unwrap();
+        let mut writer = ArrowWriter::try_new(File::create(&paths[1]).unwrap(), batch.schema(), None).unwrap();
+        writer.write(&batch).unwrap();
+        writer.close().unwrap();
+        paths
+    }
+
+    #[test]
+    fn traces_stream_through_and_are_not_held() {
+        let folder = tempfile::tempdir().unwrap();
+        for quoted in [false, true] {
+            for path in traces(folder.path(), quoted) {
+                let mut reader = TraceReader::open(&path).unwrap();
+                if let Rows::Csv(rows) = reader.rows {
+                    reader.rows = Rows::Csv(Box::new(rows.in_blocks(1 << 16)));
+                }
+                let (mut next, mut batches) = (0, 0);
+                while let Some(batch) = reader.next_batch(1000, 3000).unwrap() {
+                    for trace in &batch {
+                        assert_eq!((trace.id, trace.points.len() as u64), (2 * next, 1 + next % 9));
+                        next += 1;
+                    }
+                    batches += 1;
+                    assert!(batch.len() <= 1000 && batch.iter().map(|t| t.points.len()).sum::<usize>() <= 3000);
+                    // No more than is read at a time: 2^16 rows of Parquet, fewer of CSV.
+                    assert!(reader.gatherer.held() <= 3000 + (1 << 16), "{}", reader.gatherer.held());
+                }
+                assert_eq!((next, reader.position()), (100_000, reader.size()));
+                assert!(batches > 150 && reader.next_batch(1, 1).unwrap().is_none());
+                assert_eq!(read_traces(&path).unwrap().len(), 100_000);
+            }
+        }
+    }
+
+    #[test]
+    fn what_comes_before_a_fault_is_read_and_nothing_after() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.csv");
+        std::fs::write(&path, "trace,x,y\n0,0,0\n1,0,0\n2,0,0\n2,0,0\n1,0,0\n3,0,0\n").unwrap();
+        let mut reader = TraceReader::open(&path).unwrap();
+        if let Rows::Csv(rows) = reader.rows {
+            reader.rows = Rows::Csv(Box::new(rows.in_blocks(1)));
+        }
+        assert_eq!(reader.next_batch(1, 9).unwrap().unwrap()[0].id, 0);
+        assert_eq!(reader.next_batch(1, 9).unwrap().unwrap()[0].id, 1);
+        let e = reader.next_batch(1, 9).unwrap_err().to_string();
+        assert!(e.contains("line 6: trace 1 after trace 2"), "{e}");
+        assert!(reader.next_batch(1, 9).unwrap().is_none());
     }
 }

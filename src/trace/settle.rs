@@ -3,17 +3,18 @@
 //!
 //! A trace may stand exactly on a vertex, pass exactly through one, or slide along walls from end to end. It then
 //! counts as passing a hair off the walls, on the side that it comes from and goes on to; where both sides would do, on
-//! the left. Settled traces need no further thought: their points carry their [`Hair`].
+//! the left. Settled traces need no further thought: their points carry their [`Hair`](crate::geometry::Hair).
+
+use std::ops::ControlFlow::Continue;
 
 use glam::DVec2;
 
-use super::corner::Corner;
-use super::slide::{Stay, choose_sides, incoming, outgoing};
+use super::pluck::pluck;
 use super::{SettledTrace, Trace, Violation, ViolationKind};
-use crate::geometry::{Hair, between, check_point, opposite, orient, same_side};
+use crate::geometry::{between, check_points, higher, lower, opposite, orient, same_side};
 use crate::scene::Model;
 
-/// How many steps share one look into the index. Traces move in small steps, so neighbours see the same few walls.
+/// How many steps share one look at the walls. Most looks find none; one that does is followed by a look for each step.
 const STEPS_PER_LOOK: usize = 16;
 
 /// Checks `trace` against the model's walls and settles on which side it passes the vertices that it touches.
@@ -24,211 +25,154 @@ const STEPS_PER_LOOK: usize = 16;
 ///
 /// If the trace has no point or more than 2^31, or one that [`check_point`] refuses. What [`read_traces`] gives is sound.
 ///
+/// [`check_point`]: crate::geometry::check_point
 /// [`read_traces`]: super::read_traces
 pub fn settle(model: &Model, trace: &Trace) -> SettledTrace {
-    assert!(!trace.points.is_empty() && trace.points.len() < 1 << 31, "a trace has 1 to 2^31 points");
-    let faulty = trace.points.iter().find_map(|&p| check_point(p).err());
-    assert!(faulty.is_none(), "trace {}: {}", trace.id, faulty.map_or(String::new(), |f| f.to_string()));
-    let mut settler = Settler::new(model, trace);
-    settler.walk();
-    settler.pluck();
-    settler.settled
+    let layout = Layout::new(model, trace);
+    let points = layout.points(&trace.points);
+    layout.settle(model, trace.id, points)
 }
 
-struct Settler<'a> {
-    model: &'a Model,
-    trace: &'a Trace,
-    settled: SettledTrace,
+/// [`settle`] for a trace that is not needed any more: its points are taken over rather than copied.
+///
+/// # Panics
+///
+/// Where [`settle`] does.
+pub fn settle_owned(model: &Model, mut trace: Trace) -> SettledTrace {
+    let layout = Layout::new(model, &trace);
+    let points = match layout.inserted.as_slice() {
+        [] => std::mem::take(&mut trace.points),
+        _ => layout.points(&trace.points),
+    };
+    layout.settle(model, trace.id, points)
+}
+
+/// What is to be added to a trace's points, and what they touch.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Layout {
+    /// Points that are not the trace's own, with their indices among the settled points; ascending.
+    pub(super) inserted: Vec<(u32, DVec2)>,
     /// Indices of the settled points that stand on vertices, ascending.
-    touching: Vec<u32>,
+    pub(super) touching: Vec<u32>,
+    pub(super) violation: Option<Violation>,
 }
 
-impl<'a> Settler<'a> {
-    fn new(model: &'a Model, trace: &'a Trace) -> Self {
-        let settled = SettledTrace {
-            id: trace.id,
-            points: Vec::with_capacity(trace.points.len() + 1),
-            added: Vec::new(),
-            hairs: Vec::new(),
-            violation: None,
-        };
-        Settler { model, trace, settled, touching: Vec::new() }
+impl Layout {
+    /// Looks at every step of a trace.
+    fn new(model: &Model, trace: &Trace) -> Self {
+        let points = trace.points.as_slice();
+        assert!(!points.is_empty() && points.len() < 1 << 31, "a trace has 1 to 2^31 points");
+        if let Err((_, fault)) = check_points(points) {
+            panic!("trace {}: {fault}", trace.id);
+        }
+        let mut layout = Layout::start(model, points[0]);
+        let mut from = model.anchor();
+        for (block, first) in points.chunks(STEPS_PER_LOOK).zip((0..).step_by(STEPS_PER_LOOK)) {
+            let (low, high) = block.iter().fold((from, from), |(low, high), &p| (lower(low, p), higher(high, p)));
+            if !model.index().is_free(low, high) {
+                for (&to, step) in block.iter().zip(first..) {
+                    layout.step(model, trace, step, [from, to]);
+                    from = to;
+                }
+            }
+            from = block[block.len() - 1];
+        }
+        layout
     }
 
-    fn violate(&mut self, step: usize, kind: ViolationKind, wall: u32) {
-        let from = if step == 0 { self.model.anchor() } else { self.trace.points[step - 1] };
-        let to = self.trace.points[step];
-        let ends = self.model.scene().ends(wall as usize);
-        let found = Violation { trace: self.trace.id, step, kind, wall: wall as usize, ends, from, to };
-        if self.settled.violation.is_none_or(|v| (found.step, found.wall) < (v.step, v.wall)) {
-            self.settled.violation = Some(found);
-        }
-    }
-
-    fn add(&mut self, at: DVec2, ends_step: bool, touches: bool) {
-        let i = self.settled.points.len() as u32;
-        self.settled.points.push(at);
-        if !ends_step {
-            self.settled.added.push(i);
-        }
-        if touches {
-            self.touching.push(i);
-        }
-    }
-
-    /// Lays out the settled points: step after step, with the vertices that each passes through.
-    fn walk(&mut self) {
-        let (anchor, points) = (self.model.anchor(), &self.trace.points);
-        if points[0] != anchor {
-            self.add(anchor, false, self.model.vertex_at(anchor).is_some());
-        }
-        let mut walls = Vec::new();
-        for first in (0..points.len()).step_by(STEPS_PER_LOOK) {
-            let last = points.len().min(first + STEPS_PER_LOOK);
-            let start = if first == 0 { anchor } else { points[first - 1] };
-            let (low, high) = (points[first..last].iter()).fold((start, start), |(l, h), &p| (l.min(p), h.max(p)));
-            walls.clear();
-            walls.extend(self.model.index().near(low, high));
-            walls.sort_unstable();
-            let mut from = start;
-            for (step, &to) in (first..last).zip(&points[first..last]) {
-                self.step(step, from, to, &walls);
-                from = to;
+    /// Adds the anchor to a trace that does not start there.
+    fn start(model: &Model, first: DVec2) -> Self {
+        let mut layout = Layout::default();
+        if first != model.anchor() {
+            layout.inserted.push((0, model.anchor()));
+            if model.vertex_at(model.anchor()).is_some() {
+                layout.touching.push(0);
             }
         }
+        layout
     }
 
-    /// Adds the points of one step, given all walls near it in ascending order.
-    fn step(&mut self, step: usize, a: DVec2, b: DVec2, walls: &[u32]) {
-        let (low, high) = (a.min(b), a.max(b));
-        let mut near = false;
+    /// Looks at one step.
+    fn step(&mut self, model: &Model, trace: &Trace, step: usize, [a, b]: [DVec2; 2]) {
+        // The vertices that the step passes on its way.
         let mut passed: Vec<DVec2> = Vec::new();
-        for &wall in walls {
-            let [u, v] = self.model.scene().ends(wall as usize);
-            if u.min(v).cmpgt(high).any() || u.max(v).cmplt(low).any() {
-                continue;
-            }
-            near = true;
+        let mut touches = false;
+        let _ = model.index().visit::<()>(lower(a, b), higher(a, b), |wall, [u, v]| {
+            touches |= b == u || b == v;
+            let mut violate =
+                |kind| keep_first(&mut self.violation, violation(model, trace.id, step, kind, wall, [a, b]));
             let (from_a, from_b) = (orient(u, v, a), orient(u, v, b));
-            if from_b == 0.0 && between(u, v, b) && self.model.vertex_at(b).is_none() {
-                self.violate(step, ViolationKind::EndsInside, wall);
+            if from_b == 0.0 && between(u, v, b) && model.vertex_at(b).is_none() {
+                violate(ViolationKind::EndsInside);
             }
             if a == b || same_side(from_a, from_b) {
-                continue;
+                return Continue(());
             }
             let (to_u, to_v) = (orient(a, b, u), orient(a, b, v));
             if opposite(from_a, from_b) && opposite(to_u, to_v) {
-                self.violate(step, ViolationKind::Crosses, wall);
+                violate(ViolationKind::Crosses);
             }
             passed
                 .extend([(to_u, u), (to_v, v)].into_iter().filter(|&(s, w)| s == 0.0 && between(a, b, w)).map(|p| p.1));
-        }
+            Continue(())
+        });
         passed.sort_by(|p, q| {
             let ahead = |p: DVec2| if a.x < b.x || (a.x == b.x && a.y < b.y) { p } else { -p };
             let (p, q) = (ahead(*p), ahead(*q));
             p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y))
         });
         passed.dedup();
+        let next = |layout: &Layout| (step + layout.inserted.len()) as u32;
         for p in passed {
-            self.add(p, false, true);
+            self.touching.push(next(self));
+            self.inserted.push((next(self), p));
         }
-        self.add(b, true, near && self.model.vertex_at(b).is_some());
-    }
-
-    /// Gives every touching point its hair.
-    fn pluck(&mut self) {
-        if self.touching.is_empty() {
-            return;
-        }
-        let stays = self.stays();
-        let mut chosen: Vec<(u32, Vec<Hair>)> = Vec::new();
-        let mut s = 0;
-        while s < stays.len() {
-            let Some(_) = stays[s].corner else {
-                s += 1;
-                continue;
-            };
-            // The run of corners s..e that slides along walls link.
-            let mut e = s + 1;
-            while e < stays.len() && stays[e].corner.is_some() && stays[e - 1].slides_to(&stays[e]) {
-                e += 1;
-            }
-            self.pluck_run(&stays, s, e, &mut chosen);
-            s = e;
-        }
-        self.insert(&stays, chosen);
-    }
-
-    /// The settled points with repeats of the same place taken together, from one point before the first touching one
-    /// on; only stays that touch, and those beside them, matter.
-    fn stays(&self) -> Vec<Stay> {
-        let points = &self.settled.points;
-        let mut stays: Vec<Stay> = Vec::new();
-        let mut touching = self.touching.iter().peekable();
-        for (i, &at) in points.iter().enumerate() {
-            let touches = touching.next_if(|&&t| t as usize == i).is_some();
-            match stays.last_mut() {
-                Some(stay) if stay.at == at => stay.end = i + 1,
-                _ => {
-                    let corner = touches.then(|| Corner::new(self.model, at));
-                    stays.push(Stay { at, first: i, end: i + 1, corner });
-                }
-            }
-        }
-        stays
-    }
-
-    /// Chooses the sides of the slides in `stays[s..e]` and from them the hairs.
-    fn pluck_run(&mut self, stays: &[Stay], s: usize, e: usize, chosen: &mut Vec<(u32, Vec<Hair>)>) {
-        let before = (s > 0).then(|| &stays[s - 1]);
-        let after = stays.get(e);
-        let sides = choose_sides(&stays[s..e], before, after);
-        for i in s..e {
-            let corner = stays[i].corner.as_ref().expect("a run is made of corners");
-            let from = (i > 0).then(|| corner.way(stays[i - 1].at, incoming(&sides, i - s)));
-            let to = stays.get(i + 1).map(|next| corner.way(next.at, outgoing(&sides, i - s)));
-            let (from, to) = match (from, to) {
-                (Some(from), Some(to)) => (from, to),
-                (Some(way), None) | (None, Some(way)) => (way, way),
-                // The trace never leaves this point: any side will do.
-                (None, None) => (corner.any_way(), corner.any_way()),
-            };
-            if !corner.connects(from, to) {
-                let at = stays[i].at;
-                let walls = self.model.index().near(at, at);
-                let wall = walls.filter(|&w| self.model.scene().ends(w as usize).contains(&at)).min();
-                // The step that goes on to the wrong side.
-                let step = self.settled.step(stays[i].end);
-                self.violate(step, ViolationKind::SlipsThrough, wall.expect("a corner has walls"));
-            }
-            chosen.push((i as u32, corner.hairs(from, to)));
+        if touches {
+            self.touching.push(next(self));
         }
     }
 
-    /// Writes the hairs down, adding a point where a stay needs two.
-    fn insert(&mut self, stays: &[Stay], chosen: Vec<(u32, Vec<Hair>)>) {
-        // The points before which another is added at the same place: it takes the first hair, they the second.
-        let mut doubled: Vec<usize> = Vec::new();
-        for (stay, hairs) in chosen {
-            let stay = &stays[stay as usize];
-            let shift = doubled.len();
-            self.settled.hairs.extend((stay.first..stay.end).map(|i| ((i + shift) as u32, hairs[0])));
-            if let Some(&second) = hairs.get(1) {
-                self.settled.hairs.push(((stay.end + shift) as u32, second));
-                doubled.push(stay.end - 1);
-            }
+    /// The settled points, given the trace's own.
+    fn points(&self, own: &[DVec2]) -> Vec<DVec2> {
+        let mut points = Vec::with_capacity(own.len() + self.inserted.len());
+        let mut rest = own;
+        for &(i, p) in &self.inserted {
+            let (before, after) = rest.split_at(i as usize - points.len());
+            points.extend_from_slice(before);
+            points.push(p);
+            rest = after;
         }
-        if doubled.is_empty() {
-            return;
+        points.extend_from_slice(rest);
+        points
+    }
+
+    fn settle(self, model: &Model, id: u64, points: Vec<DVec2>) -> SettledTrace {
+        let added = self.inserted.iter().map(|p| p.0).collect();
+        let mut settled = SettledTrace { id, points, added, hairs: Vec::new(), violation: self.violation };
+        if !self.touching.is_empty() {
+            pluck(model, &mut settled, &self.touching);
         }
-        let shifted = |i: usize| (i + doubled.partition_point(|&d| d <= i)) as u32;
-        let mut added: Vec<u32> = self.settled.added.iter().map(|&a| shifted(a as usize)).collect();
-        added.extend(doubled.iter().map(|&d| shifted(d) - 1));
-        added.sort_unstable();
-        self.settled.added = added;
-        let copies = |i: usize| 1 + usize::from(doubled.binary_search(&i).is_ok());
-        let old = std::mem::take(&mut self.settled.points);
-        self.settled.points =
-            old.into_iter().enumerate().flat_map(|(i, p)| std::iter::repeat_n(p, copies(i))).collect();
+        settled
+    }
+}
+
+/// The violation of a step from `from` to `to`.
+pub(super) fn violation(
+    model: &Model,
+    trace: u64,
+    step: usize,
+    kind: ViolationKind,
+    wall: u32,
+    [from, to]: [DVec2; 2],
+) -> Violation {
+    let wall = wall as usize;
+    Violation { trace, step, kind, wall, ends: model.scene().ends(wall), from, to }
+}
+
+/// Keeps the violation of the earlier step and there that of the wall with the smaller number; of two kinds at one wall
+/// the one found first.
+pub(super) fn keep_first(kept: &mut Option<Violation>, found: Violation) {
+    if kept.is_none_or(|v| (found.step, found.wall) < (v.step, v.wall)) {
+        *kept = Some(found);
     }
 }

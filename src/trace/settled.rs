@@ -75,7 +75,14 @@ impl SettledTrace {
         &self.points
     }
 
-    /// Point `i` with its hair.
+    /// Whether every point is one of the trace's own and none stands on a vertex: the trace starts at the anchor and touches
+    /// nothing. Then point k ends step k, and no point has a hair.
+    #[inline]
+    pub fn is_plain(&self) -> bool {
+        self.added.is_empty() && self.hairs.is_empty()
+    }
+
+    /// Point `i` with its hair. O(log hairs).
     #[inline]
     pub fn point(&self, i: usize) -> TracePoint {
         let hair = match self.hairs.as_slice() {
@@ -85,21 +92,26 @@ impl SettledTrace {
         TracePoint { at: self.points[i], hair }
     }
 
-    /// Whether each of its points ends a step and none touches a vertex.
+    /// The step to which the move to point `i` belongs; 0 is the move from the anchor to the trace's first point. O(log
+    /// points added).
     #[inline]
-    pub fn is_plain(&self) -> bool {
-        self.added.is_empty() && self.hairs.is_empty()
-    }
-
-    /// The step to which the move to point `i` belongs; 0 is the move from the anchor to the trace's first point.
     pub fn step(&self, i: usize) -> usize {
-        i - self.added.partition_point(|&a| (a as usize) < i)
+        match *self.added.as_slice() {
+            [] => i,
+            // The anchor, as for most traces that do not start there.
+            [0] => i - usize::from(i > 0),
+            ref added => i - added.partition_point(|&a| (a as usize) < i),
+        }
     }
 
-    /// Whether point `i` is a point of the trace, so that a step ends there.
+    /// Whether point `i` is a point of the trace, so that a step ends there. O(log points added).
     #[inline]
     pub fn ends_step(&self, i: usize) -> bool {
-        self.added.binary_search(&(i as u32)).is_err()
+        match *self.added.as_slice() {
+            [] => true,
+            [one] => one as usize != i,
+            ref added => added.binary_search(&(i as u32)).is_err(),
+        }
     }
 
     /// The number of the trace's steps: its points less one.

@@ -1,0 +1,131 @@
+//! Traces in batches, read and checked in a thread of their own while the batch before is evaluated.
+
+use std::ops::Range;
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread::{JoinHandle, spawn};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use tautline::example::{Walker, some_walks};
+use tautline::scene::Model;
+use tautline::trace::{SettledTrace, Trace, TraceReader, settle_owned};
+
+use super::failure::Failure;
+use super::interrupt;
+
+/// How many traces a batch has at most: as many as a GPU takes in one round. More would not fill it better.
+const TRACES: usize = 8192;
+
+/// How many points they have together at most. A batch of long traces has fewer of them, so that memory stays bounded: 64 MB
+/// of points for each of the two batches under way: one that is read and checked, one that is evaluated.
+const POINTS: usize = 1 << 22;
+
+/// How often a wait for the next batch looks for Ctrl-C.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Where traces come from.
+pub(crate) enum Source {
+    File(TraceReader),
+    /// The built-in example, and which of its traces are left.
+    Walks(Walker, Range<u64>),
+}
+
+impl Source {
+    fn next(&mut self, model: &Model) -> Result<Option<Vec<Trace>>, Failure> {
+        match self {
+            Source::File(reader) => Ok(reader.next_batch(TRACES, POINTS)?),
+            Source::Walks(walker, left) => {
+                let count = TRACES.min(POINTS / (walker.steps + 1)).max(1) as u64;
+                let numbers = left.start..left.end.min(left.start + count);
+                left.start = numbers.end;
+                Ok((!numbers.is_empty()).then(|| some_walks(model, *walker, numbers)))
+            }
+        }
+    }
+
+    /// How much there is, in rows, bytes or traces; 0 if nobody knows.
+    fn size(&self) -> u64 {
+        match self {
+            Source::File(reader) => reader.size(),
+            Source::Walks(_, left) => left.end - left.start,
+        }
+    }
+
+    /// How much of that has been read.
+    fn position(&self) -> u64 {
+        match self {
+            Source::File(reader) => reader.position(),
+            Source::Walks(_, left) => left.start,
+        }
+    }
+}
+
+/// Traces that are ready to be evaluated.
+pub(crate) struct Batch {
+    pub settled: Vec<SettledTrace>,
+    /// How much of the source has been read with them.
+    pub position: u64,
+    /// How long reading and checking took.
+    pub prepared: Duration,
+}
+
+/// Batches to come.
+pub(crate) struct Batches {
+    waiting: Receiver<Result<Batch, Failure>>,
+    thread: Option<JoinHandle<()>>,
+    size: u64,
+}
+
+impl Batches {
+    /// Begins to read. The thread ends with the source, with the first error, or when nobody waits any more; it is not
+    /// waited for then, since reading from a pipe may take for ever.
+    pub(crate) fn start(source: Source, model: Arc<Model>) -> Self {
+        let size = source.size();
+        // Without room in between: a batch that is ready waits in the thread, and the one after it is not read yet.
+        let (ready, waiting) = sync_channel(0);
+        let thread = spawn(move || prepare(source, &model, &ready));
+        Batches { waiting, thread: Some(thread), size }
+    }
+
+    /// How large the source is, in the unit of [`Batch::position`]; 0 if nobody knows.
+    pub(crate) fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// The next batch; `None` after the last.
+    pub(crate) fn next(&mut self) -> Result<Option<Batch>, Failure> {
+        loop {
+            interrupt::check()?;
+            match self.waiting.recv_timeout(PATIENCE) {
+                Ok(batch) => return batch.map(Some),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => {
+                    if let Some(Err(panic)) = self.thread.take().map(JoinHandle::join) {
+                        resume_unwind(panic);
+                    }
+                    return Ok(None);
+                }
+            }
+        }
+    }
+}
+
+fn prepare(mut source: Source, model: &Model, ready: &SyncSender<Result<Batch, Failure>>) {
+    loop {
+        let start = Instant::now();
+        let batch = match source.next(model) {
+            Ok(Some(traces)) => {
+                let settled = traces.into_par_iter().map(|trace| settle_owned(model, trace)).collect();
+                Ok(Batch { settled, position: source.position(), prepared: start.elapsed() })
+            }
+            Ok(None) => return,
+            Err(failure) => Err(failure),
+        };
+        let failed = batch.is_err();
+        if ready.send(batch).is_err() || failed {
+            return;
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Writing results and events in a thread of their own while the next batch is evaluated.
+
+use std::panic::resume_unwind;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::{JoinHandle, spawn};
+use std::time::{Duration, Instant};
+
+use tautline::output::{EventWriter, ResultWriter, WholeFile};
+use tautline::rope::TraceRecord;
+use tautline::scene::Model;
+
+use super::failure::Failure;
+use super::interrupt::{self, Writing};
+
+/// How many records are written between two looks for Ctrl-C; their text is held in memory.
+const RECORDS: usize = 1024;
+
+/// The files of a run. They are begun with the first batch and appear under their names in [`finish`](Self::finish);
+/// dropped before that, nothing is left of them.
+pub(crate) struct Output {
+    out: Option<PathBuf>,
+    events: Option<PathBuf>,
+    model: Arc<Model>,
+    running: Option<Running>,
+}
+
+struct Running {
+    /// Taken when no more records come.
+    sender: Option<SyncSender<Vec<TraceRecord>>>,
+    thread: Option<JoinHandle<Result<Written, Failure>>>,
+    /// Ends after the thread.
+    _writing: Writing,
+}
+
+/// Whole files that wait for their names, and how long writing them took.
+type Written = (Vec<WholeFile>, Duration);
+
+impl Output {
+    /// Results go to `out`, events to `events`, where they are asked for.
+    pub(crate) fn new(out: Option<&Path>, events: Option<&Path>, model: &Arc<Model>) -> Self {
+        Output { out: out.map(Path::to_owned), events: events.map(Path::to_owned), model: model.clone(), running: None }
+    }
+
+    /// Takes the next records, and waits while those before are being written. Errors of earlier records are found here.
+    pub(crate) fn write(&mut self, records: Vec<TraceRecord>) -> Result<(), Failure> {
+        if self.out.is_none() && self.events.is_none() {
+            return Ok(());
+        }
+        let running = self.run()?;
+        let sent = running.sender.as_ref().map(|sender| sender.send(records));
+        // The thread ends early for a reason, which it tells.
+        if let Some(Ok(())) = sent { Ok(()) } else { running.end().map(drop) }
+    }
+
+    /// Writes the rest and gives all files their names; returns how long writing took.
+    pub(crate) fn finish(mut self) -> Result<Duration, Failure> {
+        if self.out.is_none() && self.events.is_none() {
+            return Ok(Duration::ZERO);
+        }
+        let (files, took) = self.run()?.end()?;
+        interrupt::check()?;
+        files.into_iter().try_for_each(WholeFile::finish)?;
+        Ok(took)
+    }
+
+    fn run(&mut self) -> Result<&mut Running, Failure> {
+        if self.running.is_none() {
+            let writing = Writing::begin();
+            interrupt::check()?;
+            let (sender, records) = sync_channel(0);
+            let (out, events, model) = (self.out.clone(), self.events.clone(), self.model.clone());
+            let thread = spawn(move || write_all(out.as_deref(), events.as_deref(), &model, &records));
+            self.running = Some(Running { sender: Some(sender), thread: Some(thread), _writing: writing });
+        }
+        Ok(self.running.as_mut().expect("it has just begun"))
+    }
+}
+
+impl Running {
+    /// Waits for the thread.
+    fn end(&mut self) -> Result<Written, Failure> {
+        self.sender = None;
+        match self.thread.take().map(JoinHandle::join) {
+            Some(Ok(result)) => result,
+            Some(Err(panic)) => resume_unwind(panic),
+            None => Err(Failure::internal(anyhow::anyhow!("the files were ended before"))),
+        }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.sender = None;
+        // With the thread's result its files vanish.
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}
+
+fn write_all(
+    out: Option<&Path>,
+    events: Option<&Path>,
+    model: &Model,
+    records: &Receiver<Vec<TraceRecord>>,
+) -> Result<Written, Failure> {
+    let mut took = Duration::ZERO;
+    let mut out = out.map(ResultWriter::create).transpose()?;
+    let mut events = events.map(EventWriter::create).transpose()?;
+    for records in records {
+        let start = Instant::now();
+        for records in records.chunks(RECORDS) {
+            interrupt::check()?;
+            let (results, events) = rayon::join(
+                || out.as_mut().map_or(Ok(()), |w| w.write_all(records)),
+                || events.as_mut().map_or(Ok(()), |w| w.write_all(model.vertices(), records)),
+            );
+            results.and(events)?;
+        }
+        took += start.elapsed();
+    }
+    let start = Instant::now();
+    // Neither appears before both are whole.
+    let out = out.map(ResultWriter::complete).transpose()?;
+    let events = events.map(EventWriter::complete).transpose()?;
+    Ok(([out, events].into_iter().flatten().collect(), took + start.elapsed()))
+}

@@ -1,0 +1,144 @@
+//! Mean, median and maximum of numbers that come one by one and are not held.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+use sketches_ddsketch::{Config, DDSketch};
+
+/// How many lengths are held; their median is exact. Beyond that it is approximate.
+const HELD: usize = 1 << 16;
+
+/// The relative error of an approximate median: a fraction of the last of the four digits shown.
+const ERROR: f64 = 1e-5;
+
+/// How many classes of lengths are counted at most: 16 MB. They reach from the largest length down to 10^-18 of it; all that
+/// is shorter counts as that.
+const CLASSES: u32 = 1 << 21;
+
+/// Mean, median and maximum over the traces.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Spread {
+    pub mean: f64,
+    pub median: f64,
+    pub max: f64,
+    /// Whether the median may be off by [`ERROR`].
+    pub approximate: bool,
+}
+
+impl Spread {
+    pub(crate) fn json(&self) -> Value {
+        let mut json = json!({"mean": self.mean, "median": self.median, "max": self.max});
+        if self.approximate {
+            json["median_relative_error"] = json!(ERROR);
+        }
+        json
+    }
+}
+
+/// Whole numbers; each different one is counted, so all is exact.
+#[derive(Default)]
+pub(crate) struct Counts(BTreeMap<u32, u64>);
+
+impl Counts {
+    pub(crate) fn add(&mut self, number: u32) {
+        *self.0.entry(number).or_default() += 1;
+    }
+
+    pub(crate) fn spread(&self) -> Spread {
+        let count: u64 = self.0.values().sum();
+        let Some((&max, _)) = self.0.last_key_value().filter(|_| count > 0) else { return Spread::default() };
+        let sum: u128 = self.0.iter().map(|(&number, &times)| u128::from(number) * u128::from(times)).sum();
+        let ranked = |rank: u64| {
+            let mut seen = 0;
+            let reached = self.0.iter().find(|&(_, &times)| {
+                seen += times;
+                seen > rank
+            });
+            reached.map_or(0.0, |(&number, _)| f64::from(number))
+        };
+        let median = (ranked((count - 1) / 2) + ranked(count / 2)) / 2.0;
+        Spread { mean: sum as f64 / count as f64, median, max: f64::from(max), approximate: false }
+    }
+}
+
+/// Lengths, none of them negative.
+#[derive(Default)]
+pub(crate) struct Lengths {
+    held: Vec<f64>,
+    /// Takes over when too many are held.
+    sketch: Option<DDSketch>,
+    count: u64,
+    sum: f64,
+    max: f64,
+}
+
+impl Lengths {
+    pub(crate) fn add(&mut self, length: f64) {
+        self.count += 1;
+        self.sum += length;
+        self.max = self.max.max(length);
+        match &mut self.sketch {
+            Some(sketch) => sketch.add(length),
+            None => {
+                self.held.push(length);
+                if self.held.len() > HELD {
+                    let mut sketch = DDSketch::new(Config::new(ERROR, CLASSES, f64::MIN_POSITIVE));
+                    self.held.drain(..).for_each(|held| sketch.add(held));
+                    self.sketch = Some(sketch);
+                }
+            }
+        }
+    }
+
+    pub(crate) fn spread(&self) -> Spread {
+        if self.count == 0 {
+            return Spread::default();
+        }
+        let median = match &self.sketch {
+            Some(sketch) => sketch.quantile(0.5).ok().flatten().unwrap_or(f64::NAN),
+            None => {
+                let mut sorted = self.held.clone();
+                sorted.sort_by(f64::total_cmp);
+                (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]) / 2.0
+            }
+        };
+        Spread { mean: self.sum / self.count as f64, median, max: self.max, approximate: self.sketch.is_some() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_are_exact() {
+        let mut counts = Counts::default();
+        assert_eq!(counts.spread(), Spread::default());
+        [3, 1, 7, u32::MAX].into_iter().for_each(|n| counts.add(n));
+        let max = f64::from(u32::MAX);
+        assert_eq!(counts.spread(), Spread { mean: (11.0 + max) / 4.0, median: 5.0, max, approximate: false });
+        counts.add(3);
+        assert_eq!(counts.spread().median, 3.0);
+    }
+
+    #[test]
+    fn few_lengths_are_exact_and_many_nearly_so() {
+        let mut lengths = Lengths::default();
+        assert_eq!(lengths.spread(), Spread::default());
+        [2.5, 0.0, 8.0, 4.0].into_iter().for_each(|n| lengths.add(n));
+        assert_eq!(lengths.spread(), Spread { mean: 3.625, median: 3.25, max: 8.0, approximate: false });
+        assert_eq!(lengths.spread().json(), json!({"mean": 3.625, "median": 3.25, "max": 8.0}));
+
+        for scale in [1.0, 1e-130, 1e130] {
+            let mut lengths = Lengths::default();
+            let count = 3 * HELD;
+            // Some of no length, the others evenly spread; in an order that is not theirs.
+            (0..count).for_each(|i| lengths.add(scale * (i * 7919 % count).saturating_sub(1000) as f64));
+            let spread = lengths.spread();
+            let expected = scale * (count / 2 - 1000) as f64;
+            assert!((spread.median / expected - 1.0).abs() < 2.0 * ERROR, "{} for {expected}", spread.median);
+            assert_eq!(spread.max, scale * (count - 1001) as f64);
+            assert_eq!(spread.json()["median_relative_error"], json!(ERROR));
+        }
+    }
+}
