@@ -37,6 +37,8 @@ say "formatting"
 cargo fmt --check
 say "lints"
 cargo clippy --release --all-targets --quiet -- -D warnings
+say "vector code"
+tests/vectors.sh
 say "documentation"
 RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps --document-private-items --quiet
 say "documentation's examples"

@@ -63,7 +63,7 @@ impl Window {
     /// is not at the first point, but somewhere on the first leg.
     ///
     /// Fills `slopes` for the points of the window; that of the first means nothing if there is a `start`.
-    /// O(legs), [`BLOCK`] points at a time.
+    /// O(legs), 8 points at a time.
     pub fn fold(
         simd: Simd,
         pivot: DVec2,
