@@ -11,8 +11,8 @@ use pulp::{Arch, WithSimd};
 use super::window::Wrapping;
 use super::{List, Query, Slopes};
 
-/// How many points the loops over points take at once.
-pub(super) const BLOCK: usize = 8;
+/// How many points the loops over points take at once: what fits into a vector of AVX2.
+pub(super) const BLOCK: usize = 4;
 
 /// How many points fit into the bits of a mask.
 const MASK: usize = 64;
@@ -21,7 +21,7 @@ const MASK: usize = 64;
 pub const LEGS: usize = MASK - 1;
 
 /// How many vertices the loops over vertices take at once.
-pub(super) const VERTICES: usize = 16;
+pub(super) const VERTICES: usize = 32;
 
 /// The instruction set to use.
 #[derive(Debug, Clone, Copy)]
@@ -102,55 +102,59 @@ pub(crate) struct Extent {
 
 #[inline(always)]
 fn fold_points(o: DVec2, axis: DVec2, steepest: f64, points: &[DVec2], slopes: &mut Slopes) -> (usize, Extent) {
-    let (mut low, mut high) = ([slopes.slope[0]; BLOCK], [slopes.slope[0]; BLOCK]);
-    let mut far = [slopes.squared[0]; BLOCK];
+    let (start, far) = (slopes.slope[0], slopes.squared[0]);
+    let mut lanes =
+        Lanes { o, axis, steepest, low: [start; BLOCK], high: [start; BLOCK], far: [far; BLOCK], worst: [1.0; BLOCK] };
     let (slope, _) = slopes.slope[1..].as_chunks_mut::<BLOCK>();
     let (squared, _) = slopes.squared[1..].as_chunks_mut::<BLOCK>();
-    let mut legs = 0;
-    for (i, points) in points.chunks(BLOCK).enumerate() {
-        let (slope, squared) = (&mut slope[i], &mut squared[i]);
-        let mut block = [points[points.len() - 1]; BLOCK];
-        block[..points.len()].copy_from_slice(points);
-        let good = slope_block(o, axis, steepest, &block, slope, squared).min(points.len());
-        legs += good;
-        if good < BLOCK {
-            // A last good point takes the places of those that are not.
-            for j in 0..good {
-                (low[j], high[j]) = (lesser(low[j], slope[j]), greater(high[j], slope[j]));
-                far[j] = greater(far[j], squared[j]);
-            }
-            break;
-        }
-        for j in 0..BLOCK {
-            (low[j], high[j]) = (lesser(low[j], slope[j]), greater(high[j], slope[j]));
-            far[j] = greater(far[j], squared[j]);
-        }
+    let (blocks, rest) = points.as_chunks::<BLOCK>();
+    for ((block, slope), squared) in blocks.iter().zip(slope.iter_mut()).zip(squared.iter_mut()) {
+        lanes.take(block, slope, squared);
     }
-    let low = low.into_iter().fold(low[0], lesser);
-    let high = high.into_iter().fold(high[0], greater);
-    (legs, Extent { low, high, squared: far.into_iter().fold(far[0], greater) })
+    if let Some(&last) = rest.last() {
+        let block = [0, 1, 2, 3].map(|j| if j < rest.len() { rest[j] } else { last });
+        lanes.take(&block, &mut slope[blocks.len()], &mut squared[blocks.len()]);
+    }
+    if all(lanes.worst, lesser) > 0.0 {
+        let (low, high) = (all(lanes.low, lesser), all(lanes.high, greater));
+        return (points.len(), Extent { low, high, squared: all(lanes.far, greater) });
+    }
+    let is_good = |p: &&DVec2| {
+        let way = **p - o;
+        steepest * axis.dot(way) - axis.perp_dot(way).abs() > 0.0
+    };
+    let legs = points.iter().take_while(is_good).count();
+    let (slope, squared) = (&slopes.slope[..=legs], &slopes.squared[..=legs]);
+    let low = slope.iter().copied().fold(slope[0], lesser);
+    let high = slope.iter().copied().fold(slope[0], greater);
+    (legs, Extent { low, high, squared: greatest_of(squared) })
 }
 
-/// One block of points: how many of them, from the first, are good.
-#[inline(always)]
-fn slope_block(
+/// What [`fold_points`] knows of the points that it has taken, lane by lane.
+struct Lanes {
     o: DVec2,
     axis: DVec2,
     steepest: f64,
-    points: &[DVec2; BLOCK],
-    slope: &mut [f64; BLOCK],
-    squared: &mut [f64; BLOCK],
-) -> usize {
-    let mut bad = [0u64; BLOCK];
-    for i in 0..BLOCK {
-        let (x, y) = (points[i].x - o.x, points[i].y - o.y);
-        let (along, across) = (axis.x * x + axis.y * y, axis.x * y - axis.y * x);
-        slope[i] = across / along;
-        squared[i] = x * x + y * y;
-        bad[i] = u64::from(!((along > 0.0) & (across.abs() <= steepest * along))) << i;
+    low: [f64; BLOCK],
+    high: [f64; BLOCK],
+    far: [f64; BLOCK],
+    /// Above 0 as long as all points lie before the pivot and none is too steep.
+    worst: [f64; BLOCK],
+}
+
+impl Lanes {
+    #[inline(always)]
+    fn take(&mut self, points: &[DVec2; BLOCK], slope: &mut [f64; BLOCK], squared: &mut [f64; BLOCK]) {
+        for j in 0..BLOCK {
+            let (x, y) = (points[j].x - self.o.x, points[j].y - self.o.y);
+            let (along, across) = (self.axis.x * x + self.axis.y * y, self.axis.x * y - self.axis.y * x);
+            (slope[j], squared[j]) = (across / along, x * x + y * y);
+            self.worst[j] = lesser(self.worst[j], self.steepest * along - across.abs());
+            self.low[j] = lesser(self.low[j], slope[j]);
+            self.high[j] = greater(self.high[j], slope[j]);
+            self.far[j] = greater(self.far[j], squared[j]);
+        }
     }
-    let bad = bad.into_iter().fold(0, |all, one| all | one);
-    (bad.trailing_zeros() as usize).min(BLOCK)
 }
 
 #[inline(always)]
@@ -158,11 +162,11 @@ fn greatest_of(values: &[f64]) -> f64 {
     let mut high = [values[0]; BLOCK];
     let (blocks, rest) = values.as_chunks::<BLOCK>();
     for block in blocks {
-        for i in 0..BLOCK {
-            high[i] = greater(high[i], block[i]);
+        for j in 0..BLOCK {
+            high[j] = greater(high[j], block[j]);
         }
     }
-    rest.iter().fold(high.into_iter().fold(high[0], greater), |high, &v| greater(high, v))
+    rest.iter().fold(all(high, greater), |high, &v| greater(high, v))
 }
 
 #[inline(always)]
@@ -175,28 +179,42 @@ fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
+/// All lanes taken together.
+#[inline(always)]
+fn all<T: Copy, const N: usize>(lanes: [T; N], both: impl Fn(T, T) -> T) -> T {
+    lanes.into_iter().reduce(both).expect("there are lanes")
+}
+
 #[inline(always)]
 fn meet_lines(lines: &mut [Wrapping], slopes: &Slopes, leg: usize, legs: usize) {
     let points = (legs + 1).min(MASK).next_multiple_of(BLOCK);
     let (slope, squared) = (&slopes.slope[leg..leg + points], &slopes.squared[leg..leg + points]);
     let ((slope, _), (squared, _)) = (slope.as_chunks::<BLOCK>(), squared.as_chunks::<BLOCK>());
     for Wrapping { line, met, .. } in lines {
-        // Bit i: point i lies surely above the line, surely below it, surely nearer than what the line begins at.
-        let (mut above, mut below, mut near) = (0u64, 0u64, 0u64);
-        for (i, (slope, squared)) in slope.iter().zip(squared).enumerate() {
-            let mut bits = [0u64; BLOCK];
+        // Bit i: point i lies surely above the line, surely below it, surely nearer than what the line begins at. Each lane
+        // has the bits of its own points, so that they are put together once only.
+        let (mut above, mut below, mut near) = ([0u64; BLOCK], [0u64; BLOCK], [0u64; BLOCK]);
+        let mut bit: [u64; BLOCK] = std::array::from_fn(|j| 1 << j);
+        for (slope, squared) in slope.iter().zip(squared) {
             for j in 0..BLOCK {
-                let at = |bit: bool, place: usize| u64::from(bit) << (place * BLOCK + j);
-                bits[j] = at(slope[j] > line.high, 0) | at(slope[j] < line.low, 1) | at(squared[j] < line.beyond, 2);
+                above[j] |= bit_if(slope[j] > line.high, bit[j]);
+                below[j] |= bit_if(slope[j] < line.low, bit[j]);
+                near[j] |= bit_if(squared[j] < line.beyond, bit[j]);
+                bit[j] <<= BLOCK;
             }
-            let bits = bits.into_iter().fold(0, |all, one| all | one);
-            let take = |place: usize| u64::from((bits >> (place * BLOCK)) as u8) << (i * BLOCK);
-            (above, below, near) = (above | take(0), below | take(1), near | take(2));
         }
         // On a leg with both ends above, both below or both near, nothing happens.
-        let quiet = |ends: u64| ends & (ends >> 1);
+        let quiet = |ends: [u64; BLOCK]| {
+            let ends = all(ends, |a, b| a | b);
+            ends & (ends >> 1)
+        };
         *met = !(quiet(above) | quiet(below) | quiet(near));
     }
+}
+
+#[inline(always)]
+fn bit_if(condition: bool, bit: u64) -> u64 {
+    u64::from(condition).wrapping_neg() & bit
 }
 
 #[inline(always)]
@@ -215,11 +233,15 @@ fn sweep_list(list: &List, query: &Query, found: &mut Vec<u32>) {
 /// One block of vertices: bit i is set if vertex i is inside.
 #[inline(always)]
 fn inside_block(query: &Query, x: &[f32; VERTICES], y: &[f32; VERTICES]) -> u32 {
-    let mut inside = [0; VERTICES];
-    for i in 0..VERTICES {
-        let side = |h: &[f32; 3]| h[0] * x[i] + h[1] * y[i] + h[2];
-        let hit = (side(&query.right) >= 0.0) & (side(&query.left) >= 0.0) & (side(&query.far) >= 0.0);
-        inside[i] = u32::from(hit) << i;
+    const LANES: usize = 2 * BLOCK;
+    let (mut inside, mut bit): (_, [u32; LANES]) = ([0; LANES], std::array::from_fn(|j| 1 << j));
+    for i in (0..VERTICES).step_by(LANES) {
+        for j in 0..LANES {
+            let side = |h: &[f32; 3]| h[0] * x[i + j] + h[1] * y[i + j] + h[2];
+            let hit = (side(&query.right) >= 0.0) & (side(&query.left) >= 0.0) & (side(&query.far) >= 0.0);
+            inside[j] |= u32::from(hit).wrapping_neg() & bit[j];
+            bit[j] <<= LANES;
+        }
     }
-    inside.into_iter().fold(0, |all, one| all | one)
+    all(inside, |a, b| a | b)
 }
