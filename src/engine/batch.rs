@@ -2,8 +2,8 @@
 //! exact update goes on among the candidates. Finished traces leave and waiting ones take their place. Two half-batches
 //! take turns, so that one is on the device while the other is on the CPU.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
@@ -13,6 +13,7 @@ use crate::candidates::{Found, List, Lists, Query, ROOM, Simd, Slopes};
 use crate::gpu::{GpuPass, HALVES};
 use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
+use crate::visibility::Scratch;
 
 /// What all slots share.
 struct Shared<'a, 'm> {
@@ -24,6 +25,7 @@ struct Shared<'a, 'm> {
     begun: AtomicUsize,
     /// Whether the device named a vertex that it was not given.
     astray: AtomicBool,
+    tools: Mutex<Vec<Tools>>,
     job: &'a Job,
 }
 
@@ -36,7 +38,8 @@ pub(super) fn evaluate(
     job: &Job,
 ) -> Result<Vec<TraceRecord>, EngineError> {
     let (begun, astray) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let shared = Shared { lists, window, simd: Simd::detected(), traces, begun, astray, job };
+    let (simd, tools) = (Simd::detected(), Mutex::default());
+    let shared = Shared { lists, window, simd, traces, begun, astray, tools, job };
     let slots = pass.capacity().min(traces.len().div_ceil(HALVES));
     let mut halves: [Half<'_>; HALVES] = std::array::from_fn(|_| Half::new(slots));
     let mut records: Vec<Option<TraceRecord>> = traces.iter().map(|_| None).collect();
@@ -100,10 +103,13 @@ impl<'a> Half<'a> {
     /// Takes every slot as far as the answers allow, and on to its next query. Slots without a trace leave.
     fn advance(&mut self, shared: &Shared<'a, '_>, records: &mut [Option<TraceRecord>]) {
         let found = &self.found;
-        self.slots.par_iter_mut().with_min_len(64).for_each_init(Slopes::default, |slopes, slot| {
-            shared.job.time(Phase::Update, || slot.answered(shared, found, slopes));
-            shared.job.time(Phase::Queries, || slot.ask(shared, slopes));
-        });
+        self.slots.par_iter_mut().with_min_len(64).for_each_init(
+            || Loan::from(&shared.tools),
+            |loan, slot| {
+                shared.job.time(Phase::Update, || slot.answered(shared, found, &mut loan.tools));
+                shared.job.time(Phase::Queries, || slot.ask(shared, &mut loan.tools));
+            },
+        );
         for slot in &mut self.slots {
             slot.records.drain(..).for_each(|(number, record)| records[number] = Some(record));
         }
@@ -162,10 +168,10 @@ impl<'a> Slot<'a> {
     }
 
     /// Goes on as far as the answer suffices.
-    fn answered(&mut self, shared: &Shared<'a, '_>, found: &[Found], slopes: &mut Slopes) {
+    fn answered(&mut self, shared: &Shared<'a, '_>, found: &[Found], tools: &mut Tools) {
         let (Some((_, trace)), Some(asked)) = (self.trace, &self.asked) else { return };
         let Some((first, answer)) = asked.answer else { return };
-        let (model, simd) = (shared.lists.model(), shared.simd);
+        let (model, simd, slopes) = (shared.lists.model(), shared.simd, &mut tools.slopes);
         let before = trace.step(self.course.at());
         let mut candidates = [0; ROOM];
         match found[answer].places() {
@@ -195,7 +201,7 @@ impl<'a> Slot<'a> {
     }
 
     /// Asks what comes next, in the next trace where one is done; nothing if no trace is left.
-    fn ask(&mut self, shared: &Shared<'a, '_>, slopes: &mut Slopes) {
+    fn ask(&mut self, shared: &Shared<'a, '_>, tools: &mut Tools) {
         // A query that found no room in the last round is sent again.
         if self.asked.is_some() {
             return;
@@ -214,16 +220,62 @@ impl<'a> Slot<'a> {
                 self.trace = None;
                 continue;
             }
-            let query = self.course.ask(lists.frame(), trace, shared.window, shared.simd, slopes);
+            let query = self.course.ask(lists.frame(), trace, shared.window, shared.simd, &mut tools.slopes);
             if trace.violation().is_none() {
                 let pivot = self.course.pivot(model);
-                self.asked = Some(Asked { pivot: lists.key(pivot), list: lists.of(pivot), query, answer: None });
-                return;
+                match lists.of(pivot) {
+                    Some(list) => {
+                        self.asked = Some(Asked { pivot: lists.key(pivot), list, query, answer: None });
+                        return;
+                    }
+                    None => self.look(shared, pivot, &query, tools),
+                }
+                continue;
             }
             // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
             let before = trace.step(self.course.at());
             self.course.try_all(model, trace);
             shared.job.count(trace.step(self.course.at()) - before);
         }
+    }
+
+    /// Goes on through the window that was asked for last, whose pivot is not worth a list: it is answered here and now.
+    fn look(&mut self, shared: &Shared<'a, '_>, pivot: u32, query: &Query, tools: &mut Tools) {
+        let Some((_, trace)) = self.trace else { return };
+        let before = trace.step(self.course.at());
+        let Tools { slopes, scratch, found } = tools;
+        let tried = shared.lists.look_into(pivot, query, scratch, found);
+        if found.len() <= ROOM || !self.course.narrow() {
+            self.course.go_on(shared.lists.model(), trace, found, shared.simd, slopes);
+        }
+        shared.job.count_tests(tried as u64);
+        shared.job.count(trace.step(self.course.at()) - before);
+    }
+}
+
+/// Memory that one thread works with.
+#[derive(Default)]
+struct Tools {
+    slopes: Slopes,
+    scratch: Scratch,
+    found: Vec<u32>,
+}
+
+/// Tools taken from a pool, to which they go back: they are too large to be made for every round.
+struct Loan<'a> {
+    pool: &'a Mutex<Vec<Tools>>,
+    tools: Tools,
+}
+
+impl<'a> Loan<'a> {
+    fn from(pool: &'a Mutex<Vec<Tools>>) -> Self {
+        let tools = pool.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
+        Loan { pool, tools }
+    }
+}
+
+impl Drop for Loan<'_> {
+    fn drop(&mut self) {
+        self.pool.lock().unwrap_or_else(PoisonError::into_inner).push(std::mem::take(&mut self.tools));
     }
 }

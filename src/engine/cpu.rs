@@ -8,6 +8,7 @@ use crate::candidates::{Lists, ROOM, Simd, Slopes};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
+use crate::visibility::Scratch;
 
 /// After how many steps of a trace the job is told of them, so that the threads do not fight for its counter.
 const TELL: usize = 1 << 12;
@@ -64,7 +65,13 @@ impl Engine for Cpu<'_> {
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
         let this = &*self;
-        let lane = || Lane { engine: this, course: Course::new(), slopes: Slopes::default(), found: Vec::new() };
+        let lane = || Lane {
+            engine: this,
+            course: Course::new(),
+            slopes: Slopes::default(),
+            scratch: Scratch::default(),
+            found: Vec::new(),
+        };
         traces.par_iter().map_init(lane, |lane, trace| lane.evaluate(trace, job)).collect()
     }
 
@@ -78,6 +85,7 @@ struct Lane<'e, 'm> {
     engine: &'e Cpu<'m>,
     course: Course,
     slopes: Slopes,
+    scratch: Scratch,
     /// The candidates of the current window.
     found: Vec<u32>,
 }
@@ -87,13 +95,13 @@ impl Lane<'_, '_> {
         let Cpu { lists, window, simd } = self.engine;
         let model = lists.model();
         self.course.start(model, trace);
-        let mut pivot = self.course.pivot(model);
-        let mut list = lists.of(pivot);
+        // The list of the last pivot that had one.
+        let mut list = None;
         let (mut told, mut tests) = (0, 0);
         loop {
             if let Some(record) = self.course.finished(trace) {
                 job.count(trace.step(self.course.at()) - told);
-                job.count_tests(tests);
+                job.count_tests(tests as u64);
                 return Ok(record);
             }
             job.go_on()?;
@@ -103,9 +111,9 @@ impl Lane<'_, '_> {
                 told = step;
             }
             let query = job.time(Phase::Queries, || {
-                let now = self.course.pivot(model);
-                if now != pivot {
-                    (pivot, list) = (now, lists.of(now));
+                let pivot = self.course.pivot(model);
+                if list.as_ref().is_none_or(|&(of, _)| of != pivot) {
+                    list = lists.of(pivot).map(|list| (pivot, list));
                 }
                 self.course.ask(lists.frame(), trace, *window, *simd, &mut self.slopes)
             });
@@ -115,8 +123,13 @@ impl Lane<'_, '_> {
                 continue;
             }
             self.found.clear();
-            job.time(Phase::Kernel, || list.sweep(*simd, &query, &mut self.found));
-            tests += list.numbers().len() as u64;
+            tests += job.time(Phase::Kernel, || match &list {
+                Some((_, list)) => {
+                    list.sweep(*simd, &query, &mut self.found);
+                    list.numbers().len()
+                }
+                None => lists.look_into(self.course.pivot(model), &query, &mut self.scratch, &mut self.found),
+            });
             if self.found.len() > ROOM && self.course.narrow() {
                 continue;
             }

@@ -1,7 +1,5 @@
 //! The constrained triangulation of a scene's walls, laid out for walking through it.
 
-use std::collections::HashMap;
-
 use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
@@ -60,15 +58,18 @@ impl Mesh {
 
     fn from_cdt(cdt: &Cdt, vertices: Vec<DVec2>, real: u32, anchor: u32) -> Mesh {
         let mut edges = Vec::with_capacity(3 * cdt.num_inner_faces());
-        let mut numbers = HashMap::with_capacity(3 * cdt.num_inner_faces());
+        // The number here of each of the library's edges that has a triangle on its left.
+        let mut numbers = vec![CLOSED; cdt.num_directed_edges()];
         for face in cdt.inner_faces() {
             for edge in face.adjacent_edges() {
-                numbers.insert(edge.fix(), edges.len() as u32);
+                numbers[edge.fix().index()] = edges.len() as u32;
                 edges.push(HalfEdge { origin: edge.from().fix().index() as u32, twin: CLOSED });
             }
         }
-        for (edge, &number) in &numbers {
-            edges[number as usize].twin = numbers.get(&edge.rev()).copied().unwrap_or(CLOSED);
+        for edge in cdt.directed_edges() {
+            if let Some(half) = edges.get_mut(numbers[edge.fix().index()] as usize) {
+                half.twin = numbers[edge.rev().fix().index()];
+            }
         }
         let mut first_fan = vec![0; vertices.len() + 1];
         for edge in &edges {

@@ -59,11 +59,32 @@ impl Visibility {
     ///
     /// If `pivot` is more than the number of vertices.
     pub fn look(&self, pivot: u32, scratch: &mut Scratch, seen: &mut Vec<u32>) {
+        self.look_into(pivot, |_| 0, scratch, seen);
+    }
+
+    /// Writes those of them that lie inside all lines of some kind into `seen`, each once, and returns how many triangles
+    /// were looked at.
+    ///
+    /// `outside` has a bit for each line outside which a point lies; `pivot` must lie inside all. Looks no further than
+    /// that: for pivots that are not worth a list. O(triangles of the mesh inside).
+    ///
+    /// # Panics
+    ///
+    /// If `pivot` is more than the number of vertices.
+    #[inline]
+    pub fn look_into(
+        &self,
+        pivot: u32,
+        outside: impl Fn(DVec2) -> u8,
+        scratch: &mut Scratch,
+        seen: &mut Vec<u32>,
+    ) -> usize {
         seen.clear();
         let o = self.mesh.pivot(pivot);
-        self.mesh.expand(o, scratch, seen);
+        let triangles = self.mesh.expand(o, scratch, seen, outside);
         let at = self.mesh.at(o);
         seen.retain(|&v| self.is_tangent(at, v));
+        triangles
     }
 
     /// Whether the walls that meet at `v` leave one side of the line from `o` to it free.
