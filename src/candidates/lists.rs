@@ -15,7 +15,7 @@ pub const LISTS_BUDGET: usize = 256 << 20;
 /// After how many queries a pivot gets a list unless told otherwise. Making one costs as much as some 40 looks that go no
 /// further than their queries (about 15 us and 0.35 us at 1,000 vertices); so whatever comes, at most twice the time is spent
 /// that would have been best.
-const WORTH_A_LIST: u32 = 16;
+const WORTH_A_LIST: u32 = 8;
 
 /// Which vertices each pivot's queries try.
 pub struct Lists<'m> {
@@ -114,10 +114,7 @@ impl<'m> Lists<'m> {
 
     /// The list of all vertices.
     pub fn all(&self) -> &Arc<List> {
-        self.all.get_or_init(|| {
-            let numbers: Vec<u32> = (0..self.model.vertices().len() as u32).collect();
-            Arc::new(List::new(self.model, &self.frame, &numbers))
-        })
+        self.all.get_or_init(|| Arc::new(List::all(self.model, &self.frame)))
     }
 
     /// Whether every pivot has the list of [`all`](Self::all) vertices: because that was asked for, or because the scene
@@ -174,7 +171,8 @@ impl<'m> Lists<'m> {
         let pool = || self.looks.lock().unwrap_or_else(PoisonError::into_inner);
         let (mut scratch, mut seen) = pool().pop().unwrap_or_default();
         self.visibility().expect("checked before").look(pivot, &mut scratch, &mut seen);
-        let list = Arc::new(List::new(self.model, &self.frame, &seen));
+        let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
+        let list = Arc::new(List::about(self.model, &self.frame, at, &seen));
         pool().push((scratch, seen));
         let now = self.made.fetch_add(1, Ordering::Relaxed);
         let entry = &self.entries[pivot as usize];

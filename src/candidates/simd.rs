@@ -21,7 +21,7 @@ const MASK: usize = 64;
 pub const LEGS: usize = MASK - 1;
 
 /// How many vertices the loops over vertices take at once.
-pub(super) const VERTICES: usize = 32;
+pub(super) const VERTICES: usize = 16;
 
 /// The instruction set to use.
 #[derive(Debug, Clone, Copy)]
@@ -88,8 +88,9 @@ wide! {
 }
 
 wide! {
-    /// Adds the numbers of all vertices of `list` inside the triangle of `query` to `found`.
-    sweep as SweepOp(list: &'a List, query: &'a Query, found: &'a mut Vec<u32>) -> () = sweep_list
+    /// Adds the numbers of the vertices of `list` inside the triangle of `query`, of the first `count` or a few more, to
+    /// `found`.
+    sweep as SweepOp(list: &'a List, query: &'a Query, count: usize, found: &'a mut Vec<u32>) -> () = sweep_list
 }
 
 /// The least and the greatest slope and the greatest squared distance of some points.
@@ -218,10 +219,10 @@ fn bit_if(condition: bool, bit: u64) -> u64 {
 }
 
 #[inline(always)]
-fn sweep_list(list: &List, query: &Query, found: &mut Vec<u32>) {
+fn sweep_list(list: &List, query: &Query, count: usize, found: &mut Vec<u32>) {
     let (x, _) = list.x.as_chunks::<VERTICES>();
     let (y, _) = list.y.as_chunks::<VERTICES>();
-    for (block, (x, y)) in x.iter().zip(y).enumerate() {
+    for (block, (x, y)) in x.iter().zip(y).take(count.div_ceil(VERTICES)).enumerate() {
         let mut inside = inside_block(query, x, y);
         while inside != 0 {
             found.push(list.numbers[block * VERTICES + inside.trailing_zeros() as usize]);

@@ -133,10 +133,10 @@ impl<'a> Half<'a> {
             let mut tests = 0;
             for (answer, &ordered) in (0..).zip(&self.order) {
                 let Some(asked) = &mut self.slots[ordered as u32 as usize].asked else { continue };
-                let (first, count) = ((ordered >> 32) as u32, asked.list.numbers().len() as u32);
-                self.queries.push(Query { first, count, ..asked.query });
+                let first = (ordered >> 32) as u32;
+                self.queries.push(Query { first, ..asked.query });
                 asked.answer = Some((first, answer));
-                tests += u64::from(count);
+                tests += u64::from(asked.query.count);
             }
             pass.send(number, &self.queries);
             shared.job.count_tests(tests);
@@ -191,7 +191,7 @@ impl<'a> Slot<'a> {
             // Too many for one leg.
             None => {
                 let mut candidates = Vec::new();
-                asked.list.sweep(simd, &asked.query, &mut candidates);
+                asked.list.sweep(simd, &asked.query, asked.query.count as usize, &mut candidates);
                 self.course.recall(trace, simd, slopes);
                 self.course.go_on(model, trace, &candidates, simd, slopes);
             }
@@ -225,6 +225,8 @@ impl<'a> Slot<'a> {
                 let pivot = self.course.pivot(model);
                 match lists.of(pivot) {
                     Some(list) => {
+                        let count = list.within(self.course.squared(trace)) as u32;
+                        let query = Query { count, ..query };
                         self.asked = Some(Asked { pivot: lists.key(pivot), list, query, answer: None });
                         return;
                     }

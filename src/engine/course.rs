@@ -71,6 +71,13 @@ impl Course {
         }
     }
 
+    /// The square of the greatest distance from the pivot in the window asked for last, in the scene's unit.
+    pub(super) fn squared(&self, trace: &SettledTrace) -> f64 {
+        let pivot = self.walk.rope.pivot();
+        let leg = || trace.points()[self.first..=self.first + 1].iter().map(|a| a.distance_squared(pivot));
+        self.window.map_or_else(|| leg().fold(0.0, f64::max), |window| window.squared)
+    }
+
     /// Computes the last window's slopes anew, where those of [`ask`](Self::ask) were not kept.
     pub(super) fn recall(&self, trace: &SettledTrace, simd: Simd, slopes: &mut Slopes) {
         if let Some(window) = &self.window {

@@ -125,8 +125,9 @@ impl Lane<'_, '_> {
             self.found.clear();
             tests += job.time(Phase::Kernel, || match &list {
                 Some((_, list)) => {
-                    list.sweep(*simd, &query, &mut self.found);
-                    list.numbers().len()
+                    let count = list.within(self.course.squared(trace));
+                    list.sweep(*simd, &query, count, &mut self.found);
+                    count
                 }
                 None => lists.look_into(self.course.pivot(model), &query, &mut self.scratch, &mut self.found),
             });

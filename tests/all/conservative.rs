@@ -69,7 +69,7 @@ proptest! {
                 None => (1, Query::leg(&frame, pivot, points[0], points[1])),
             };
             let mut named = vec![];
-            Lists::new(&model).all().sweep(simd, &query, &mut named);
+            Lists::new(&model).all().sweep(simd, &query, model.vertices().len(), &mut named);
             for leg in 0..legs {
                 let from = if leg == 0 { corners[1] } else { points[leg] };
                 for (vertex, &p) in model.vertices().iter().enumerate() {
