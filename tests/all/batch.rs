@@ -15,10 +15,10 @@ fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
     engine.evaluate(traces, &Job::new()).unwrap()
 }
 
-/// The `gpu` engine with a given number of slots.
-fn gpu(model: &Model, slots: usize) -> Gpu<'_> {
-    let tuning = Tuning { queries: slots, workgroup: 64 };
-    Gpu::with(software(), Lists::new(model), LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
+/// The `gpu` engine with rounds of a given number of queries, that asks the GPU about every pivot.
+fn gpu(model: &Model, queries: usize) -> Gpu<'_> {
+    let tuning = Tuning { queries, workgroup: 64 };
+    Gpu::with(software(), Lists::new(model).after(0), LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
 }
 
 fn settled(model: &Model, traces: &[Trace]) -> Vec<SettledTrace> {
@@ -36,6 +36,7 @@ fn agree(model: &Model, traces: &[SettledTrace]) {
     let truth = run(&mut Reference::new(model), traces);
     assert!(truth.iter().any(|r| r.events.len() > 4), "nothing happened to compare");
     assert_eq!(run(&mut Cpu::new(model), traces), truth);
+    assert_eq!(run(&mut Gpu::new(software(), model).unwrap(), traces), truth);
     assert_eq!(run(&mut gpu(model, 1 << 13), traces), truth);
 }
 
@@ -215,18 +216,17 @@ fn a_stopped_job_ends_early() {
 fn lists_that_do_not_fit_the_budget_are_made_again() {
     let (model, traces) = example(Walker { step: 0.3, steps: 300, seed: 9 }, 60);
     let truth = run(&mut Reference::new(&model), &traces);
-    let mut roomy = Cpu::new(&model);
+    let mut roomy = Cpu::with_lists(Lists::new(&model).after(0));
     assert_eq!(run(&mut roomy, &traces), truth);
     let pivots = roomy.lists().made();
-    let lists = || Lists::new(&model).budget(1 << 14);
-    let mut cramped = Cpu::with_lists(lists());
+    let mut cramped = Cpu::with_lists(Lists::new(&model).after(0).budget(1 << 14));
     assert_eq!(run(&mut cramped, &traces), truth);
     assert!(cramped.lists().made() > 2 * pivots, "{} lists, {pivots} pivots", cramped.lists().made());
     // On the device there are two blocks at least, which hold more than this scene has: so lists of 20,000 vertices.
     let model = posts();
     let traces = settled(&model, &walks(&model, Walker { step: 0.8, steps: 100, seed: 4 }, 40));
     let tuning = Tuning { queries: 7, workgroup: 64 };
-    let mut gpu = Gpu::with(software(), Lists::new(&model).budget(1 << 14), 0, tuning, SWEEP_WGSL).unwrap();
+    let mut gpu = Gpu::with(software(), Lists::new(&model).after(0).budget(1 << 14), 0, tuning, SWEEP_WGSL).unwrap();
     assert_eq!(run(&mut gpu, &traces), run(&mut Reference::new(&model), &traces));
 }
 

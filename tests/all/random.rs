@@ -4,14 +4,15 @@ use std::sync::OnceLock;
 
 use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
-use tautline::candidates::Simd;
+use tautline::candidates::{Lists, Simd};
 use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Reference};
+use tautline::gpu::{SWEEP_WGSL, Tuning};
 use tautline::rope::{EventKind, Status, TraceRecord, replay};
 use tautline::scene::Model;
 use tautline::trace::{SettledTrace, Trace, settle};
 
 use crate::scenes::{KINDS, Kind, Recipe, recipe};
-use crate::support::software;
+use crate::support::{gpu_on, software};
 
 fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
     engine.evaluate(traces, &Job::new()).unwrap()
@@ -118,6 +119,8 @@ fn cpu_gives_the_references_events() {
                 assert_eq!(run(&mut Cpu::new(model), batch), truth);
                 assert_eq!(run(&mut Cpu::new(model).window(1), batch), truth);
                 assert_eq!(run(&mut Cpu::new(model).simd(Simd::baseline()), batch), truth);
+                assert_eq!(run(&mut Cpu::with_lists(Lists::new(model).after(0)), batch), truth);
+                assert_eq!(run(&mut Cpu::with_lists(Lists::new(model).after(2)).window(3), batch), truth);
                 assert_eq!(run(&mut Cpu::new(model).keep_all(), batch), truth);
                 assert_eq!(run(&mut Cpu::new(model).keep_all().window(1), batch), truth);
             });
@@ -134,7 +137,8 @@ fn gpu_gives_the_references_events() {
             check(kind, touching, 40, |model, _, settled| {
                 let batch = std::slice::from_ref(settled);
                 let truth = run(&mut Reference::new(model), batch);
-                assert_eq!(run(&mut Gpu::new(adapter.clone(), model).unwrap(), batch), truth);
+                assert_eq!(run(&mut gpu_on(adapter.clone(), Lists::new(model).after(0)), batch), truth);
+                assert_eq!(run(&mut gpu_on(adapter.clone(), Lists::new(model).keep_all()).window(1), batch), truth);
             });
         }
     }
@@ -164,5 +168,41 @@ fn lawless_traces_are_lawful_until_they_cross_a_wall() {
                 assert_eq!(lawful.events, same);
             });
         }
+    }
+}
+
+/// Records do not depend on the number of threads, the order of the traces, the size of rounds, or what else is evaluated.
+#[test]
+fn how_traces_are_batched_changes_nothing() {
+    static ADAPTER: OnceLock<tautline::gpu::Device> = OnceLock::new();
+    let adapter = ADAPTER.get_or_init(software);
+    let pools = [1, 3].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap());
+    let shape = (1usize..40, 1usize..8, 0usize..1000, 1usize..300, 0u32..6);
+    let config = ProptestConfig { cases: 20 * ProptestConfig::default().cases / 256, ..ProptestConfig::default() };
+    for kind in [Kind::Random, Kind::Lattice, Kind::Boxes, Kind::Fine] {
+        let mut runner = TestRunner::new(ProptestConfig { failure_persistence: None, ..config.clone() });
+        let recipes = prop::collection::vec(recipe(kind, true), 1..12);
+        let result = runner.run(&(recipes, shape.clone()), |(recipes, (queries, stride, shift, window, after))| {
+            // All traces of the first recipe's scene: those of the others that keep to its walls, and its own.
+            let model = recipes[0].model();
+            let traces: Vec<Trace> = recipes.iter().zip(0..).map(|(recipe, id)| recipe.trace(&model, id)).collect();
+            let settled: Vec<SettledTrace> = traces.iter().map(|t| settle(&model, t)).collect();
+            let truth = run(&mut Reference::new(&model), &settled);
+            // Another order, with repeats.
+            let order: Vec<usize> = (0..3 * settled.len()).map(|i| (i * stride + shift) % settled.len()).collect();
+            let mixed: Vec<SettledTrace> = order.iter().map(|&i| settled[i].clone()).collect();
+            let expected: Vec<TraceRecord> = order.iter().map(|&i| truth[i].clone()).collect();
+            let tuning = Tuning { queries, workgroup: 64 };
+            let lists = || Lists::new(&model).after(after);
+            for pool in &pools {
+                pool.install(|| {
+                    assert_eq!(run(&mut Cpu::with_lists(lists()).window(window), &mixed), expected);
+                    let gpu = Gpu::with(adapter.clone(), lists(), 0, tuning, SWEEP_WGSL).unwrap();
+                    assert_eq!(run(&mut gpu.window(window), &mixed), expected);
+                });
+            }
+            Ok(())
+        });
+        result.unwrap_or_else(|e| panic!("{kind:?}: {e}"));
     }
 }

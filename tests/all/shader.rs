@@ -47,7 +47,7 @@ fn found_out(model: &Model, keep_all: bool, walker: Walker, count: u64, changes:
     let truth = Reference::new(model).evaluate(&traces, &Job::new()).unwrap();
     let device = software();
     let agrees = |wgsl: &str| {
-        let lists = if keep_all { Lists::new(model).keep_all() } else { Lists::new(model) };
+        let lists = if keep_all { Lists::new(model).keep_all() } else { Lists::new(model).after(0) };
         let tuning = Tuning { queries: 64, workgroup: 64 };
         let mut engine = Gpu::with(device.clone(), lists, LISTS_BUDGET, tuning, wgsl).unwrap();
         // A changed shader may name vertices that it was not given, which is an error.

@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 use serde::Deserialize;
+use tautline::candidates::{LISTS_BUDGET, Lists};
 use tautline::engine::{Engine, Gpu, Job};
-use tautline::gpu::{AdapterChoice, Device};
+use tautline::gpu::{AdapterChoice, Device, SWEEP_WGSL};
 use tautline::rope::{TraceRecord, replay};
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
@@ -98,9 +99,15 @@ pub(crate) fn software() -> Device {
     Device::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The `gpu` engine on the software adapter.
+/// The `gpu` engine on the software adapter, which it asks about every pivot.
 pub(crate) fn gpu(model: &Model) -> Gpu<'_> {
-    Gpu::new(software(), model).unwrap()
+    gpu_on(software(), Lists::new(model).after(0))
+}
+
+/// The `gpu` engine on `device` for these lists.
+pub(crate) fn gpu_on(device: Device, lists: Lists<'_>) -> Gpu<'_> {
+    let tuning = device.tuning();
+    Gpu::with(device, lists, LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
 }
 
 /// 20,000 wall ends: more vertices than two uniform buffers hold.
