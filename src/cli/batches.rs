@@ -1,6 +1,6 @@
 //! Traces in batches, read and checked in a thread of their own while the batch before is evaluated.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
@@ -15,12 +15,10 @@ use tautline::trace::{SettledTrace, Trace, TraceReader, settle_owned};
 use super::failure::Failure;
 use super::interrupt;
 
-/// How many traces a batch has at most: as many as a GPU takes in one round. More would not fill it better.
-const TRACES: usize = 8192;
-
-/// How many points they have together at most. A batch of long traces has fewer of them, so that memory stays bounded: 64 MB
-/// of points for each of the two batches under way: one that is read and checked, one that is evaluated.
-const POINTS: usize = 1 << 22;
+/// How many points the traces of a batch have together at most. A batch of long traces has fewer of them, so that memory
+/// stays bounded: 64 MB of points for each of the two batches under way: one that is read and checked, one that is
+/// evaluated. Engines that can make use of more traces at once than others get up to eight times as much.
+const POINTS: RangeInclusive<usize> = 1 << 22..=1 << 25;
 
 /// How often a wait for the next batch looks for Ctrl-C.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -33,11 +31,12 @@ pub(crate) enum Source {
 }
 
 impl Source {
-    fn next(&mut self, model: &Model) -> Result<Option<Vec<Trace>>, Failure> {
+    fn next(&mut self, model: &Model, traces: usize) -> Result<Option<Vec<Trace>>, Failure> {
+        let points = (512 * traces).clamp(*POINTS.start(), *POINTS.end());
         match self {
-            Source::File(reader) => Ok(reader.next_batch(TRACES, POINTS)?),
+            Source::File(reader) => Ok(reader.next_batch(traces, points)?),
             Source::Walks(walker, left) => {
-                let count = TRACES.min(POINTS / (walker.steps + 1)).max(1) as u64;
+                let count = traces.min(points / (walker.steps + 1)).max(1) as u64;
                 let numbers = left.start..left.end.min(left.start + count);
                 left.start = numbers.end;
                 Ok((!numbers.is_empty()).then(|| some_walks(model, *walker, numbers)))
@@ -79,13 +78,13 @@ pub(crate) struct Batches {
 }
 
 impl Batches {
-    /// Begins to read. The thread ends with the source, with the first error, or when nobody waits any more; it is not
+    /// Begins to read batches of at most `traces` traces. The thread ends with the source, with the first error, or when nobody waits any more; it is not
     /// waited for then, since reading from a pipe may take for ever.
-    pub(crate) fn start(source: Source, model: Arc<Model>) -> Self {
+    pub(crate) fn start(source: Source, model: Arc<Model>, traces: usize) -> Self {
         let size = source.size();
         // Without room in between: a batch that is ready waits in the thread, and the one after it is not read yet.
         let (ready, waiting) = sync_channel(0);
-        let thread = spawn(move || prepare(source, &model, &ready));
+        let thread = spawn(move || prepare(source, &model, traces, &ready));
         Batches { waiting, thread: Some(thread), size }
     }
 
@@ -112,10 +111,10 @@ impl Batches {
     }
 }
 
-fn prepare(mut source: Source, model: &Model, ready: &SyncSender<Result<Batch, Failure>>) {
+fn prepare(mut source: Source, model: &Model, traces: usize, ready: &SyncSender<Result<Batch, Failure>>) {
     loop {
         let start = Instant::now();
-        let batch = match source.next(model) {
+        let batch = match source.next(model, traces) {
             Ok(Some(traces)) => {
                 let settled = traces.into_par_iter().map(|trace| settle_owned(model, trace)).collect();
                 Ok(Batch { settled, position: source.position(), prepared: start.elapsed() })

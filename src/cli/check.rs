@@ -11,6 +11,9 @@ use super::failure::Failure;
 use super::input::InputArgs;
 use super::{interrupt, print, print_json};
 
+/// How many traces are checked at a time.
+const TRACES: usize = 8192;
+
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -70,7 +73,7 @@ struct Counts {
 
 /// Reads all traces, batch by batch.
 fn count(args: &Args, model: &Arc<Model>) -> Result<Counts, Failure> {
-    let mut batches = Batches::start(args.input.source()?, model.clone());
+    let mut batches = Batches::start(args.input.source()?, model.clone(), TRACES);
     let mut violations = args.input.violations();
     let mut counts = Counts::default();
     while let Some(batch) = batches.next()? {

@@ -48,8 +48,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if model.scene().dropped() > 0 {
         eprintln!("note: {} walls of zero length were dropped", model.scene().dropped());
     }
-    let batches = Batches::start(args.input.source()?, model.clone());
+    let source = args.input.source()?;
     let (mut engine, on) = args.engine.open(&model)?;
+    let batches = Batches::start(source, model.clone(), engine.batch());
     let mut summary = Summary::new(&args.input.name(), &model, (engine.name(), on));
     let mut times = evaluate(args, &model, batches, &mut *engine, &mut summary)?;
     times.total = start.elapsed();

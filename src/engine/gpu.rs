@@ -2,7 +2,7 @@
 
 use super::{Engine, EngineError, Job, WINDOW, batch};
 use crate::candidates::{LISTS_BUDGET, Lists};
-use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass, SWEEP_WGSL, Tuning};
+use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass, HALVES, SWEEP_WGSL, Tuning};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
@@ -69,6 +69,10 @@ impl Engine for Gpu<'_> {
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
         batch::evaluate(&mut self.pass, &self.lists, self.window, traces, job)
+    }
+
+    fn batch(&self) -> usize {
+        HALVES * self.pass.capacity()
     }
 
     fn forget(&mut self) {

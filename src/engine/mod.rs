@@ -28,6 +28,9 @@ pub use reference::Reference;
 /// longer windows gain little.
 pub const WINDOW: usize = 256;
 
+/// How many traces engines without a device can make use of at once: enough that all threads end at about the same time.
+const BATCH: usize = 8192;
+
 /// Turns batches of independent traces into records, for the model that the engine was made for.
 pub trait Engine {
     /// The engine's name, as the command line knows it.
@@ -41,6 +44,12 @@ pub trait Engine {
     ///
     /// [`EngineError::Stopped`] when the job was stopped, and whatever can go wrong with the engine's device.
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError>;
+
+    /// How many traces, at the most, it can make use of in one evaluation: with fewer it may be slower, with more it is no
+    /// faster.
+    fn batch(&self) -> usize {
+        BATCH
+    }
 
     /// Forgets what was made of the model on the way, so that the next evaluation makes it anew: for measurements.
     fn forget(&mut self) {}

@@ -50,7 +50,7 @@ fn funnel_gives_the_same_taut_ropes() {
 }
 
 #[test]
-fn the_window_changes_nothing() {
+fn neither_the_window_nor_keep_all_changes_anything() {
     let folder = Folder::floor_plan(20, 200);
     for engine in ["cpu", "gpu --adapter software"] {
         let usual = eval(&folder, &format!("--traces t.csv --engine {engine}"), "jsonl");
@@ -58,6 +58,8 @@ fn the_window_changes_nothing() {
             let found = eval(&folder, &format!("--traces t.csv --engine {engine} --window {window}"), "jsonl");
             assert!(found == usual, "{engine} with --window {window}");
         }
+        let found = eval(&folder, &format!("--traces t.csv --engine {engine} --window 1 --keep-all"), "jsonl");
+        assert!(found == usual, "{engine} with --keep-all");
     }
 }
 
