@@ -76,18 +76,18 @@ fn sweep(@builtin(global_invocation_id) id: vec3<u32>) {
     if query.first < page.first {
         count = found[lane].count;
     }
-    let start = max(query.first, page.first) - page.first;
-    let end = min(query.first + query.count, page.first + PAGE) - page.first;
-    // Lists begin at even places.
-    for (var i = start / 2u; 2u * i < end; i++) {
-        let pair = page.pairs[i];
+    // Lists begin at even places, and so do pages. A query that tries less of its list than its neighbours do may have ended
+    // before this page.
+    let end = min(query.first + query.count, page.first + PAGE);
+    for (var place = max(query.first, page.first); place < end; place += 2u) {
+        let pair = page.pairs[(place - page.first) / 2u];
         if inside(query, pair.xy) {
-            name_place(lane, count, page.first + 2u * i);
+            name_place(lane, count, place);
             count++;
         }
-        // The last pair of an odd list holds one vertex only.
-        if inside(query, pair.zw) && 2u * i + 1u < end {
-            name_place(lane, count, page.first + 2u * i + 1u);
+        // An odd number of vertices ends with half a pair.
+        if inside(query, pair.zw) && place + 1u < end {
+            name_place(lane, count, place + 1u);
             count++;
         }
     }

@@ -66,6 +66,7 @@ impl<'m> Lists<'m> {
     /// With all vertices in every list, as the seed of the method has it.
     #[must_use]
     pub fn keep_all(mut self) -> Self {
+        self.forget();
         self.keep_all = true;
         self
     }
@@ -87,6 +88,7 @@ impl<'m> Lists<'m> {
     /// Drops all lists and the triangulation from which they were made.
     pub fn forget(&mut self) {
         self.visibility.take();
+        self.all.take();
         self.entries.iter_mut().for_each(|entry| *entry = Entry::default());
         *self.bytes.get_mut() = 0;
         *self.made.get_mut() = 0;
@@ -150,7 +152,7 @@ impl<'m> Lists<'m> {
     ///
     /// # Panics
     ///
-    /// If [`of`](Self::of) has just given a list for `pivot`, there may be nothing to look into.
+    /// If all pivots share one list ([`keeps_all`](Self::keeps_all)), so that [`of`](Self::of) always gives it.
     pub fn look_into(&self, pivot: u32, query: &Query, scratch: &mut Scratch, found: &mut Vec<u32>) -> usize {
         let visibility = self.visibility().expect("where nothing can be looked into, all pivots have lists");
         let [right, left, far] = [query.right, query.left, query.far].map(|h| h.map(f64::from));
@@ -174,25 +176,33 @@ impl<'m> Lists<'m> {
         let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
         let list = Arc::new(List::about(self.model, &self.frame, at, &seen));
         pool().push((scratch, seen));
-        let now = self.made.fetch_add(1, Ordering::Relaxed);
         let entry = &self.entries[pivot as usize];
-        entry.used.store(now, Ordering::Relaxed);
-        let before = entry.list.write().unwrap_or_else(PoisonError::into_inner).replace(Arc::clone(&list));
-        // Another thread may have made the same list meanwhile.
-        self.bytes.fetch_sub(before.map_or(0, |b| b.bytes()), Ordering::Relaxed);
-        if self.bytes.fetch_add(list.bytes(), Ordering::Relaxed) + list.bytes() > self.budget {
+        {
+            // All of it under the lock, so that nobody drops a list whose bytes do not count yet.
+            let mut slot = entry.list.write().unwrap_or_else(PoisonError::into_inner);
+            if let Some(list) = &*slot {
+                // Another thread has made it meanwhile.
+                return Arc::clone(list);
+            }
+            entry.used.store(self.made.fetch_add(1, Ordering::Relaxed), Ordering::Relaxed);
+            self.bytes.fetch_add(list.bytes(), Ordering::Relaxed);
+            *slot = Some(Arc::clone(&list));
+        }
+        if self.bytes() > self.budget {
             self.drop_some();
         }
         list
     }
 
     /// Drops the lists not used for longest until a quarter of the budget is free, so that this is rarely done.
+    /// O(pivots + lists log lists).
     #[cold]
     fn drop_some(&self) {
         // One thread does it; the others go on meanwhile.
         let Ok(_dropping) = self.dropping.try_lock() else { return };
-        let used = self.entries.iter().map(|e| e.used.load(Ordering::Relaxed));
-        let mut oldest: Vec<(u64, usize)> = used.zip(0..).collect();
+        let has_list = |e: &Entry| e.list.read().unwrap_or_else(PoisonError::into_inner).is_some();
+        let lists = self.entries.iter().zip(0..).filter(|(entry, _)| has_list(entry));
+        let mut oldest: Vec<(u64, usize)> = lists.map(|(e, pivot)| (e.used.load(Ordering::Relaxed), pivot)).collect();
         oldest.sort_unstable();
         for (_, pivot) in oldest {
             if self.bytes() <= self.budget / 4 * 3 {

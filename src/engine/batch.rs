@@ -63,6 +63,7 @@ fn play<'a>(
             shared.job.go_on()?;
             half.collect(pass, number, shared.job)?;
             half.advance(shared, records);
+            shared.job.go_on()?;
             if shared.astray.load(Ordering::Relaxed) {
                 return Err(pass.device().failed("it named a vertex that it was not given").into());
             }
@@ -107,7 +108,7 @@ impl<'a> Half<'a> {
             || Loan::from(&shared.tools),
             |loan, slot| {
                 shared.job.time(Phase::Update, || slot.answered(shared, found, &mut loan.tools));
-                shared.job.time(Phase::Queries, || slot.ask(shared, &mut loan.tools));
+                slot.ask(shared, &mut loan.tools);
             },
         );
         for slot in &mut self.slots {
@@ -207,7 +208,7 @@ impl<'a> Slot<'a> {
             return;
         }
         let (lists, model) = (shared.lists, shared.lists.model());
-        loop {
+        while shared.job.go_on().is_ok() {
             let Some((number, trace)) = self.trace else {
                 let number = shared.begun.fetch_add(1, Ordering::Relaxed);
                 let Some(trace) = shared.traces.get(number) else { return };
@@ -220,10 +221,12 @@ impl<'a> Slot<'a> {
                 self.trace = None;
                 continue;
             }
-            let query = self.course.ask(lists.frame(), trace, shared.window, shared.simd, &mut tools.slopes);
+            let query = shared.job.time(Phase::Queries, || {
+                self.course.ask(lists.frame(), trace, shared.window, shared.simd, &mut tools.slopes)
+            });
             if trace.violation().is_none() {
                 let pivot = self.course.pivot(model);
-                match lists.of(pivot) {
+                match shared.job.time(Phase::Queries, || lists.of(pivot)) {
                     Some(list) => {
                         let count = list.within(self.course.squared(trace)) as u32;
                         let query = Query { count, ..query };
@@ -235,9 +238,10 @@ impl<'a> Slot<'a> {
                 continue;
             }
             // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
-            let before = trace.step(self.course.at());
+            let before = self.course.at();
             self.course.try_all(model, trace);
-            shared.job.count(trace.step(self.course.at()) - before);
+            shared.job.count(trace.step(self.course.at()) - trace.step(before));
+            shared.job.count_tests(((self.course.at() - before) * model.vertices().len()) as u64);
         }
     }
 
@@ -246,9 +250,11 @@ impl<'a> Slot<'a> {
         let Some((_, trace)) = self.trace else { return };
         let before = trace.step(self.course.at());
         let Tools { slopes, scratch, found } = tools;
-        let tried = shared.lists.look_into(pivot, query, scratch, found);
+        let job = shared.job;
+        let tried = job.time(Phase::Kernel, || shared.lists.look_into(pivot, query, scratch, found));
         if found.len() <= ROOM || !self.course.narrow() {
-            self.course.go_on(shared.lists.model(), trace, found, shared.simd, slopes);
+            let model = shared.lists.model();
+            job.time(Phase::Update, || self.course.go_on(model, trace, found, shared.simd, slopes));
         }
         shared.job.count_tests(tried as u64);
         shared.job.count(trace.step(self.course.at()) - before);

@@ -110,17 +110,18 @@ impl Lane<'_, '_> {
                 job.count(step - told);
                 told = step;
             }
-            let query = job.time(Phase::Queries, || {
-                let pivot = self.course.pivot(model);
-                if list.as_ref().is_none_or(|&(of, _)| of != pivot) {
-                    list = lists.of(pivot).map(|list| (pivot, list));
-                }
-                self.course.ask(lists.frame(), trace, *window, *simd, &mut self.slopes)
-            });
+            let query =
+                job.time(Phase::Queries, || self.course.ask(lists.frame(), trace, *window, *simd, &mut self.slopes));
             if trace.violation().is_some() {
                 // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
+                let before = self.course.at();
                 self.course.try_all(model, trace);
+                tests += (self.course.at() - before) * model.vertices().len();
                 continue;
+            }
+            let pivot = self.course.pivot(model);
+            if list.as_ref().is_none_or(|&(of, _)| of != pivot) {
+                list = job.time(Phase::Queries, || lists.of(pivot)).map(|list| (pivot, list));
             }
             self.found.clear();
             tests += job.time(Phase::Kernel, || match &list {
@@ -129,7 +130,7 @@ impl Lane<'_, '_> {
                     list.sweep(*simd, &query, count, &mut self.found);
                     count
                 }
-                None => lists.look_into(self.course.pivot(model), &query, &mut self.scratch, &mut self.found),
+                None => lists.look_into(pivot, &query, &mut self.scratch, &mut self.found),
             });
             if self.found.len() > ROOM && self.course.narrow() {
                 continue;

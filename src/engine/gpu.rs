@@ -53,7 +53,13 @@ impl<'m> Gpu<'m> {
     #[must_use]
     pub fn keep_all(mut self) -> Self {
         self.lists = self.lists.keep_all();
+        self.pass.forget();
         self
+    }
+
+    /// The pass that it runs.
+    pub fn pass(&self) -> &GpuPass {
+        &self.pass
     }
 
     /// The lists that it has made so far.

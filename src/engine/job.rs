@@ -62,8 +62,8 @@ impl Job {
         self.steps.load(Ordering::Relaxed)
     }
 
-    /// How many vertices have been tried in all, by the candidate pass or, in engines without one, by the update. Engines
-    /// that try no vertices report 0.
+    /// How many vertices have been tried in all, by the candidate pass or, in engines without one, by the update; a look
+    /// through a triangle of the scene's triangulation tries one. Engines that try no vertices report 0.
     pub fn tests(&self) -> u64 {
         self.tests.load(Ordering::Relaxed)
     }

@@ -17,7 +17,7 @@ const HEADER_BYTES: u64 = 16;
 /// How many vertices a page holds; `PAGE` in the shader.
 pub(super) const PAGE_VERTICES: u32 = ((PAGE_BYTES - HEADER_BYTES) / 8) as u32;
 
-/// How many pages share a buffer, if no list needs more: 1 MiB.
+/// How many pages share a buffer, if no list needs more and the budget allows: 1 MiB.
 const BLOCK_PAGES: u32 = 16;
 
 /// The place of no list.
@@ -38,6 +38,8 @@ pub(super) struct Pages {
     /// The block that is being filled.
     open: usize,
     round: u64,
+    /// How often a block was emptied to make room.
+    emptied: u64,
 }
 
 struct Block {
@@ -59,12 +61,13 @@ impl Pages {
             label: Some("page"),
             entries: &[binding(0, wgpu::BufferBindingType::Uniform, true)],
         });
-        let size = BLOCK_PAGES.max((largest as u32).div_ceil(PAGE_VERTICES));
+        let affordable = (budget as u64 / 2 / PAGE_BYTES).min(u64::from(BLOCK_PAGES)) as u32;
+        let size = affordable.max((largest as u32).div_ceil(PAGE_VERTICES)).max(1);
         // All places fit into a u32.
         let most = (u32::MAX / PAGE_VERTICES / size) as u64;
         let most_blocks = (budget as u64 / (u64::from(size) * PAGE_BYTES)).clamp(2, most) as usize;
         let places = vec![NOWHERE; pivots];
-        Pages { layout, blocks: Vec::new(), size, most_blocks, places, open: 0, round: 0 }
+        Pages { layout, blocks: Vec::new(), size, most_blocks, places, open: 0, round: 0, emptied: 0 }
     }
 
     pub(super) fn layout(&self) -> &wgpu::BindGroupLayout {
@@ -90,7 +93,8 @@ impl Pages {
             self.blocks[block].used = self.round;
             return Some(known);
         }
-        let size = list.numbers().len() as u32;
+        // An empty list takes a place too, so that it lies in the block in which it is.
+        let size = (list.numbers().len() as u32).max(1);
         let start = match self.blocks.get(self.open).and_then(|block| self.fit(block.filled, size)) {
             Some(start) => start,
             None => {
@@ -131,7 +135,12 @@ impl Pages {
             return None;
         }
         self.empty(oldest);
+        self.emptied += 1;
         Some(oldest)
+    }
+
+    pub(super) fn emptied(&self) -> u64 {
+        self.emptied
     }
 
     fn empty(&mut self, block: usize) {

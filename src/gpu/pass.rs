@@ -145,6 +145,11 @@ impl GpuPass {
         self.capacity
     }
 
+    /// How often lists on the device had to make room for others, a block of them at a time.
+    pub fn emptied(&self) -> u64 {
+        self.pages.emptied()
+    }
+
     /// Forgets which lists lie on the device.
     pub fn forget(&mut self) {
         self.pages.forget();

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use glam::DVec2;
 
-use crate::geometry::{opposite, orient};
+use crate::geometry::{check_point, opposite, orient};
 use crate::scene::Model;
 
 /// The points, none of them a vertex, in which two walls cross and that lie exactly on both: split there, the walls can be
@@ -27,7 +27,8 @@ pub(super) fn crossings(model: &Model) -> Vec<DVec2> {
             }
             // Rounded, and kept only if nothing was lost. Adding zero turns a negative zero into the positive one.
             let p = c + (d - c) * (to_c / (to_c - to_d)) + DVec2::ZERO;
-            let is_exact = orient(a, b, p) == 0.0 && orient(c, d, p) == 0.0;
+            // The areas are used as sizes for a guess only; whether it is right, their signs say.
+            let is_exact = check_point(p).is_ok() && orient(a, b, p) == 0.0 && orient(c, d, p) == 0.0;
             if is_exact
                 && p != model.anchor()
                 && model.vertex_at(p).is_none()

@@ -53,6 +53,20 @@ fn check(kind: Kind, model: &Model) -> Result<usize, TestCaseError> {
         once.dedup();
         prop_assert_eq!(once.len(), seen.len(), "a vertex is listed twice");
         let o = model.vertices().get(pivot as usize).copied().unwrap_or(model.anchor());
+        // Bounded by lines through walls that do not go through the pivot, a look sees the same, as far as they let it.
+        let lines: Vec<[DVec2; 2]> = (0..model.scene().walls().len())
+            .map(|wall| model.scene().ends(wall))
+            .filter(|&[u, v]| orient(u, v, o) != 0.0)
+            .skip(pivot as usize % 5)
+            .take(3)
+            .collect();
+        let is_outside = |p: DVec2, [u, v]: [DVec2; 2]| opposite(orient(u, v, o), orient(u, v, p));
+        let outside = |p: DVec2| lines.iter().zip(0..).map(|(&line, i)| u8::from(is_outside(p, line)) << i).sum();
+        let mut within = vec![];
+        visibility.look_into(pivot, outside, &mut scratch, &mut within);
+        let expected: Vec<u32> = once.iter().copied().filter(|&v| outside(model.vertices()[v as usize]) == 0).collect();
+        within.sort_unstable();
+        prop_assert_eq!(within, expected, "a look from {} bounded by {:?}", o, lines);
         for (v, &p) in (0..).zip(model.vertices()) {
             let hidden = is_blocked(model, o, p);
             let behind = model.vertices().iter().any(|&q| orient(o, p, q) == 0.0 && between(o, p, q));

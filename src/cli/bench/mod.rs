@@ -85,10 +85,10 @@ impl SweepName {
     }
 }
 
-/// A number above 0.
+/// A number above 0, neither so large nor so small that no clock and no walk could make anything of it.
 fn length(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
-    number.ok_or_else(|| "give a number above 0, such as 0.01".to_owned())
+    let number = text.parse().ok().filter(|x: &f64| (1e-9..=1e9).contains(x));
+    number.ok_or_else(|| "give a number from 1e-9 to 1e9, such as 0.01".to_owned())
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
