@@ -53,12 +53,12 @@ fn gpu_round(bencher: Bencher<'_, '_>) {
     let (list, mut queries) = (lists.all(), queries(&lists));
     let device = Device::open(&AdapterChoice::Best).expect("an adapter");
     let (n, tuning) = (MODEL.vertices().len(), device.tuning());
-    let mut pass = GpuPass::new(device, n + 1, n, LISTS_BUDGET, tuning).expect("a pass");
+    let mut pass = GpuPass::new(device, lists.keys(), n, LISTS_BUDGET, tuning).expect("a pass");
     queries.truncate(pass.capacity());
     let mut found = vec![Found::default(); queries.len()];
     bencher.counter(ItemsCount::new(queries.len())).bench_local(|| {
         pass.start_round();
-        let first = pass.place(lists.key(0), list).expect("the first list of a round finds room");
+        let first = pass.place(lists.key(0, list), list).expect("the first list of a round finds room");
         queries.iter_mut().for_each(|query| (query.first, query.count) = (first, n as u32));
         pass.send(0, &queries);
         pass.collect(0, &mut found).expect("the round is done");

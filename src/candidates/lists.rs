@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
-use super::{Frame, List, Query};
+use super::{Frame, List, Query, Simd};
 use glam::DVec2;
 
 use crate::scene::Model;
@@ -16,6 +16,18 @@ pub const LISTS_BUDGET: usize = 256 << 20;
 /// further than their queries (about 15 us and 0.5 us at 1,000 vertices), and most pivots that are asked about 8 times are
 /// asked about many times more.
 const WORTH_A_LIST: u32 = 8;
+
+/// Up to how many vertices all of them are tried rather than looked for: sixteen of them take as long as a tenth of a
+/// triangle.
+const FEW: usize = 2048;
+
+/// One triangle of the scene's triangulation takes as long to look at as some 150 vertices take to try. A look for one query
+/// gives up, and all vertices are tried, when it has taken about twice as long as that.
+const VERTICES_A_TRIANGLE: usize = 64;
+
+/// How many triangles the making of a list may look at, in scenes where that is more than an eighth of the vertices: a few
+/// times as many as pivots see through where walls hide most of the scene. Pivots that see more try all vertices.
+const TRIANGLES_A_LIST: usize = 1 << 10;
 
 /// Which vertices each pivot's queries try.
 pub struct Lists<'m> {
@@ -125,9 +137,14 @@ impl<'m> Lists<'m> {
         self.keep_all || self.visibility().is_none()
     }
 
-    /// The pivot whose list is that of `pivot` too: itself, unless all pivots share one.
-    pub fn key(&self, pivot: u32) -> u32 {
-        if self.keeps_all() { self.model.vertices().len() as u32 } else { pivot }
+    /// A number for `list`, which is that of `pivot`: the pivot, or another for the list of all vertices, whosever it is.
+    pub fn key(&self, pivot: u32, list: &Arc<List>) -> u32 {
+        if Arc::ptr_eq(list, self.all()) { self.keys() as u32 - 1 } else { pivot }
+    }
+
+    /// How many different [`key`](Self::key)s there are.
+    pub fn keys(&self) -> usize {
+        self.entries.len() + 1
     }
 
     /// The list of `pivot` (a vertex, or the number of vertices for the anchor), for one query or several. `None` as long as
@@ -147,21 +164,34 @@ impl<'m> Lists<'m> {
         (wanted >= self.worth).then(|| self.make(pivot))
     }
 
-    /// Writes the candidates of a query about `pivot` into `found`, without a list, and returns how many triangles of
-    /// the scene's triangulation were looked at.
+    /// Adds the candidates of a query about `pivot` to `found`, without a list of its own, and returns how many vertices were
+    /// tried.
     ///
-    /// # Panics
-    ///
-    /// If all pivots share one list ([`keeps_all`](Self::keeps_all)), so that [`of`](Self::of) always gives it.
-    pub fn look_into(&self, pivot: u32, query: &Query, scratch: &mut Scratch, found: &mut Vec<u32>) -> usize {
-        let visibility = self.visibility().expect("where nothing can be looked into, all pivots have lists");
-        let [right, left, far] = [query.right, query.left, query.far].map(|h| h.map(f64::from));
-        let outside = |p: DVec2| {
-            let p = self.frame.place(p);
-            let is_outside = |[x, y, offset]: [f64; 3]| u8::from(x * p.x + y * p.y + offset < 0.0);
-            is_outside(right) | is_outside(left) << 1 | is_outside(far) << 2
-        };
-        visibility.look_into(pivot, outside, scratch, found)
+    /// Looks through the triangles of the scene's triangulation in which the query lies, or tries all vertices where that
+    /// is less.
+    pub fn look_into(
+        &self,
+        pivot: u32,
+        query: &Query,
+        simd: Simd,
+        scratch: &mut Scratch,
+        found: &mut Vec<u32>,
+    ) -> usize {
+        let n = self.model.vertices().len();
+        if let (true, Some(visibility)) = (n > FEW, self.visibility()) {
+            let [right, left, far] = [query.right, query.left, query.far].map(|h| h.map(f64::from));
+            let outside = |p: DVec2| {
+                let p = self.frame.place(p);
+                let is_outside = |[x, y, offset]: [f64; 3]| u8::from(x * p.x + y * p.y + offset < 0.0);
+                is_outside(right) | is_outside(left) << 1 | is_outside(far) << 2
+            };
+            if let Some(tried) = visibility.look_into(pivot, outside, n / VERTICES_A_TRIANGLE, scratch, found) {
+                return tried;
+            }
+        }
+        found.clear();
+        self.all().sweep(simd, query, n, found);
+        n
     }
 
     fn visibility(&self) -> Option<&Visibility> {
@@ -172,9 +202,17 @@ impl<'m> Lists<'m> {
     fn make(&self, pivot: u32) -> Arc<List> {
         let pool = || self.looks.lock().unwrap_or_else(PoisonError::into_inner);
         let (mut scratch, mut seen) = pool().pop().unwrap_or_default();
-        self.visibility().expect("checked before").look(pivot, &mut scratch, &mut seen);
-        let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
-        let list = Arc::new(List::about(self.model, &self.frame, at, &seen));
+        let n = self.model.vertices().len();
+        let visibility = self.visibility().expect("where there is none, all pivots have one list");
+        let most = TRIANGLES_A_LIST.max(n / 8);
+        let looked = visibility.look_into(pivot, |_| 0, most, &mut scratch, &mut seen);
+        let list = match looked {
+            Some(_) if seen.len() < n / 2 => {
+                let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
+                Arc::new(List::about(self.model, &self.frame, at, &seen))
+            }
+            _ => Arc::clone(self.all()),
+        };
         pool().push((scratch, seen));
         let entry = &self.entries[pivot as usize];
         {
@@ -185,13 +223,18 @@ impl<'m> Lists<'m> {
                 return Arc::clone(list);
             }
             entry.used.store(self.made.fetch_add(1, Ordering::Relaxed), Ordering::Relaxed);
-            self.bytes.fetch_add(list.bytes(), Ordering::Relaxed);
+            self.bytes.fetch_add(self.own_bytes(&list), Ordering::Relaxed);
             *slot = Some(Arc::clone(&list));
         }
         if self.bytes() > self.budget {
             self.drop_some();
         }
         list
+    }
+
+    /// What a list counts for: nothing if it is that of all vertices, which there is once.
+    fn own_bytes(&self, list: &Arc<List>) -> usize {
+        if Arc::ptr_eq(list, self.all()) { 0 } else { list.bytes() }
     }
 
     /// Drops the lists not used for longest until a quarter of the budget is free, so that this is rarely done.
@@ -210,7 +253,7 @@ impl<'m> Lists<'m> {
             }
             let dropped = self.entries[pivot].list.write().unwrap_or_else(PoisonError::into_inner).take();
             self.entries[pivot].wanted.store(0, Ordering::Relaxed);
-            self.bytes.fetch_sub(dropped.map_or(0, |d| d.bytes()), Ordering::Relaxed);
+            self.bytes.fetch_sub(dropped.map_or(0, |d| self.own_bytes(&d)), Ordering::Relaxed);
         }
     }
 }

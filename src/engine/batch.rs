@@ -230,7 +230,7 @@ impl<'a> Slot<'a> {
                     Some(list) => {
                         let count = list.within(self.course.squared(trace)) as u32;
                         let query = Query { count, ..query };
-                        self.asked = Some(Asked { pivot: lists.key(pivot), list, query, answer: None });
+                        self.asked = Some(Asked { pivot: lists.key(pivot, &list), list, query, answer: None });
                         return;
                     }
                     None => self.look(shared, pivot, &query, tools),
@@ -251,7 +251,7 @@ impl<'a> Slot<'a> {
         let before = trace.step(self.course.at());
         let Tools { slopes, scratch, found } = tools;
         let job = shared.job;
-        let tried = job.time(Phase::Kernel, || shared.lists.look_into(pivot, query, scratch, found));
+        let tried = job.time(Phase::Kernel, || shared.lists.look_into(pivot, query, shared.simd, scratch, found));
         if found.len() <= ROOM || !self.course.narrow() {
             let model = shared.lists.model();
             job.time(Phase::Update, || self.course.go_on(model, trace, found, shared.simd, slopes));

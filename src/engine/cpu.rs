@@ -130,7 +130,7 @@ impl Lane<'_, '_> {
                     list.sweep(*simd, &query, count, &mut self.found);
                     count
                 }
-                None => lists.look_into(pivot, &query, &mut self.scratch, &mut self.found),
+                None => lists.look_into(pivot, &query, *simd, &mut self.scratch, &mut self.found),
             });
             if self.found.len() > ROOM && self.course.narrow() {
                 continue;

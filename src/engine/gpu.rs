@@ -33,7 +33,7 @@ impl<'m> Gpu<'m> {
     /// What the device complains of, be it the shader or the memory.
     pub fn with(device: Device, lists: Lists<'m>, budget: usize, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
         let n = lists.model().vertices().len();
-        let pass = GpuPass::with_shader(device, n + 1, n, budget, tuning, wgsl)?;
+        let pass = GpuPass::with_shader(device, lists.keys(), n, budget, tuning, wgsl)?;
         Ok(Gpu { lists, pass, window: WINDOW })
     }
 

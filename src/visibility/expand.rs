@@ -58,7 +58,7 @@ struct View {
 
 impl Mesh {
     /// Adds all vertices of the model that are visible from mesh vertex `o`, in the closed sense, to `seen`, each once, and
-    /// returns how many triangles were looked at.
+    /// returns how many triangles were looked at; `None` if it gave up because they were more than `most`.
     ///
     /// A view is an open cone between two vertices seen before; what lies in it or on its bounding rays is listed. So a
     /// vertex that a line of sight grazes is listed, and what can be left out lies exactly behind another.
@@ -74,7 +74,8 @@ impl Mesh {
         scratch: &mut Scratch,
         seen: &mut Vec<u32>,
         outside: impl Fn(DVec2) -> u8,
-    ) -> usize {
+        most: usize,
+    ) -> Option<usize> {
         scratch.start(self.real() as usize);
         let at = self.at(o);
         let look = |vertex| Seen { vertex, outside: outside(self.at(vertex)) };
@@ -89,6 +90,9 @@ impl Mesh {
         let mut triangles = self.fan(o).len();
         while let Some(View { edge, ends, right, left }) = scratch.views.pop() {
             triangles += 1;
+            if triangles > most {
+                return None;
+            }
             // The triangle behind the edge: from the edge's right end to the apex, and from the apex to its left end.
             let to_apex = self.edge(next(edge));
             let from_apex = self.edge(next(next(edge)));
@@ -108,7 +112,7 @@ impl Mesh {
                 scratch.look_behind(from_apex.twin, View { edge, ends: [apex.outside, ends[1]], right, left });
             }
         }
-        triangles
+        Some(triangles)
     }
 
     #[inline]

@@ -7,6 +7,10 @@ use super::crossings::crossings;
 use crate::geometry::{between, orient};
 use crate::scene::Model;
 
+/// Into how many pieces walls may be cut by vertices that lie on them, on average, before the rest stays out, which is safe:
+/// thousands of walls that lie on each other would be cut into millions.
+const PIECES: usize = 16;
+
 /// Marks an edge through which one cannot see: a wall, or the mesh's outer border.
 pub(super) const CLOSED: u32 = u32::MAX;
 
@@ -47,12 +51,16 @@ impl Mesh {
         vertices.extend(crossings(model));
         vertices.extend(corners(model));
         let mut cdt = triangulate(&vertices)?;
-        for &[u, v] in model.scene().walls() {
+        let walls = model.scene().walls();
+        let (mut added, mut room) = (0, PIECES * walls.len());
+        while added < walls.len() && room > 0 {
             // A wall that crosses another where no vertex is stays out: it then hides nothing, which is safe.
-            cdt.try_add_constraint(handle(u), handle(v));
+            let [u, v] = walls[added].map(handle);
+            room = room.saturating_sub(cdt.try_add_constraint(u, v).len());
+            added += 1;
         }
         let mut mesh = Mesh::from_cdt(&cdt, vertices, real, anchor);
-        mesh.close(&cdt, model);
+        mesh.close(&cdt, &walls[..added]);
         Some(mesh)
     }
 
@@ -90,8 +98,8 @@ impl Mesh {
 
     /// Closes the edges that lie on walls. Only those that are found by following a wall from vertex to vertex are closed,
     /// so whatever else the triangulation holds as constraints hides nothing.
-    fn close(&mut self, cdt: &Cdt, model: &Model) {
-        for &[u, v] in model.scene().walls() {
+    fn close(&mut self, cdt: &Cdt, walls: &[[u32; 2]]) {
+        for &[u, v] in walls {
             let (mut here, end) = (u, self.at(v));
             while here != v {
                 let at = self.at(here);

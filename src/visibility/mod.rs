@@ -59,11 +59,11 @@ impl Visibility {
     ///
     /// If `pivot` is more than the number of vertices.
     pub fn look(&self, pivot: u32, scratch: &mut Scratch, seen: &mut Vec<u32>) {
-        self.look_into(pivot, |_| 0, scratch, seen);
+        self.look_into(pivot, |_| 0, usize::MAX, scratch, seen);
     }
 
     /// Writes those of them that lie inside all lines of some kind into `seen`, each once, and returns how many triangles
-    /// were looked at.
+    /// were looked at; `None`, and something in `seen` or nothing, if it gave up because they were more than `most`.
     ///
     /// `outside` has a bit for each line outside which a point lies; `pivot` must lie inside all. Looks no further than
     /// that: for pivots that are not worth a list. O(triangles of the mesh inside).
@@ -76,15 +76,16 @@ impl Visibility {
         &self,
         pivot: u32,
         outside: impl Fn(DVec2) -> u8,
+        most: usize,
         scratch: &mut Scratch,
         seen: &mut Vec<u32>,
-    ) -> usize {
+    ) -> Option<usize> {
         seen.clear();
         let o = self.mesh.pivot(pivot);
-        let triangles = self.mesh.expand(o, scratch, seen, outside);
+        let triangles = self.mesh.expand(o, scratch, seen, outside, most)?;
         let at = self.mesh.at(o);
         seen.retain(|&v| self.is_tangent(at, v));
-        triangles
+        Some(triangles)
     }
 
     /// Whether the walls that meet at `v` leave one side of the line from `o` to it free.

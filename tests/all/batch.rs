@@ -254,3 +254,36 @@ fn the_funnel_of_a_scene_without_walls_is_straight() {
     assert_eq!((records[0].length, records[0].max_length, records[0].pull), (1.0, 5.0, Some(-DVec2::Y)));
     assert_eq!((records[1].length, records[1].max_length, records[1].pull), (0.0, 0.0, None));
 }
+
+/// Short walls along a ring, all ends of which see most others: looks and lists give up, and all vertices are tried. Their
+/// number is also more than one page holds, so that lists of different lengths share a page.
+#[test]
+fn where_all_sees_all_everything_is_tried() {
+    let n = 4500;
+    let turn = |k: f64| DVec2::from_angle(std::f64::consts::TAU * k / f64::from(n));
+    let walls = (0..n).map(|k| [turn(f64::from(k)), 1.0001 * turn(f64::from(k))]);
+    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(0.05, 0.0))).unwrap();
+    let trace = |id: u64| {
+        let out = (37 * id % 4500) as f64 + 0.5;
+        let around = (0..12).map(|j| 1.2 * turn(out + 70.0 * f64::from(j)));
+        Trace { id, points: [model.anchor(), 0.999 * turn(out)].into_iter().chain(around).collect() }
+    };
+    let traces = settled(&model, &(0..12).map(trace).collect::<Vec<_>>());
+    agree(&model, &traces);
+    let visible = Lists::new(&model).after(0);
+    assert!(visible.of(9000).is_some_and(|list| list.numbers().len() == 9000), "the anchor does not see too much");
+}
+
+/// Walls that lie on each other are cut by each other's ends into more pieces than are kept.
+#[test]
+fn walls_that_lie_on_each_other() {
+    let walls = (0..400).map(|k| {
+        let x = 1.0 + f64::from(k) / 512.0;
+        [DVec2::new(-x, 0.25), DVec2::new(x, 0.25)]
+    });
+    let walls = walls.chain([[DVec2::new(0.5, -1.0), DVec2::new(0.75, -0.5)]]);
+    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap();
+    let points =
+        [[0.0, -1.5], [3.0, -1.5], [3.0, 2.0], [-3.0, 2.0], [-3.0, -2.0], [1.0, -0.5]].map(DVec2::from).to_vec();
+    agree(&model, &settled(&model, &[Trace { id: 0, points }]));
+}

@@ -63,7 +63,7 @@ fn check(kind: Kind, model: &Model) -> Result<usize, TestCaseError> {
         let is_outside = |p: DVec2, [u, v]: [DVec2; 2]| opposite(orient(u, v, o), orient(u, v, p));
         let outside = |p: DVec2| lines.iter().zip(0..).map(|(&line, i)| u8::from(is_outside(p, line)) << i).sum();
         let mut within = vec![];
-        visibility.look_into(pivot, outside, &mut scratch, &mut within);
+        visibility.look_into(pivot, outside, usize::MAX, &mut scratch, &mut within);
         let expected: Vec<u32> = once.iter().copied().filter(|&v| outside(model.vertices()[v as usize]) == 0).collect();
         within.sort_unstable();
         prop_assert_eq!(within, expected, "a look from {} bounded by {:?}", o, lines);

@@ -173,8 +173,8 @@ fn bad_usage_is_told_with_what_would_do() {
     folder.refused(2, "bench --scene rooms --anchor 1,1", &["--anchor goes with a scene file"]);
     folder.refused(2, "bench --scene rooms --sweep n", &["rooms", "a sweep over n goes through scenes random-M"]);
     folder.refused(2, "bench --sweep m", &["m", "batch", "step", "window"]);
-    for step in ["0", "-1", "nan", "inf", "x"] {
-        folder.refused(2, &format!("bench --step={step}"), &["--step", "a number above 0"]);
+    for step in ["0", "-1", "nan", "inf", "1e-320", "1e30", "x"] {
+        folder.refused(2, &format!("bench --step={step}"), &["--step", "a number from 1e-9 to 1e9"]);
     }
     for option in ["--traces", "--steps", "--repeats", "--window"] {
         folder.refused(2, &format!("bench {option} 0"), &[option, "0"]);
