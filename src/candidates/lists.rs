@@ -17,13 +17,9 @@ pub const LISTS_BUDGET: usize = 256 << 20;
 /// asked about many times more.
 const WORTH_A_LIST: u32 = 8;
 
-/// Up to how many vertices all of them are tried rather than looked for: sixteen of them take as long as a tenth of a
-/// triangle.
-const FEW: usize = 2048;
-
-/// One triangle of the scene's triangulation takes as long to look at as some 150 vertices take to try. A look for one query
-/// gives up, and all vertices are tried, when it has taken about twice as long as that.
-const VERTICES_A_TRIANGLE: usize = 64;
+/// How many triangles a look for one query may take before it gives up and all vertices are tried, in scenes where that is
+/// more than a 64th of the vertices: one triangle takes as long as some 150 vertices.
+const TRIANGLES_A_LOOK: usize = 64;
 
 /// How many triangles the making of a list may look at, in scenes where that is more than an eighth of the vertices: a few
 /// times as many as pivots see through where walls hide most of the scene. Pivots that see more try all vertices.
@@ -178,14 +174,15 @@ impl<'m> Lists<'m> {
         found: &mut Vec<u32>,
     ) -> usize {
         let n = self.model.vertices().len();
-        if let (true, Some(visibility)) = (n > FEW, self.visibility()) {
+        if let Some(visibility) = self.visibility() {
             let [right, left, far] = [query.right, query.left, query.far].map(|h| h.map(f64::from));
             let outside = |p: DVec2| {
                 let p = self.frame.place(p);
                 let is_outside = |[x, y, offset]: [f64; 3]| u8::from(x * p.x + y * p.y + offset < 0.0);
                 is_outside(right) | is_outside(left) << 1 | is_outside(far) << 2
             };
-            if let Some(tried) = visibility.look_into(pivot, outside, n / VERTICES_A_TRIANGLE, scratch, found) {
+            let most = TRIANGLES_A_LOOK.max(n / 64);
+            if let Some(tried) = visibility.look_into(pivot, outside, most, scratch, found) {
                 return tried;
             }
         }
