@@ -21,9 +21,9 @@ const WORTH_A_LIST: u32 = 8;
 /// more than a 64th of the vertices: one triangle takes as long as some 150 vertices.
 const TRIANGLES_A_LOOK: usize = 64;
 
-/// How many triangles the making of a list may look at, in scenes where that is more than an eighth of the vertices: a few
+/// How many triangles the making of a list may look at, in scenes where that is more than a quarter of the vertices: several
 /// times as many as pivots see through where walls hide most of the scene. Pivots that see more try all vertices.
-const TRIANGLES_A_LIST: usize = 1 << 10;
+const TRIANGLES_A_LIST: usize = 1 << 12;
 
 /// Which vertices each pivot's queries try.
 pub struct Lists<'m> {
@@ -201,14 +201,14 @@ impl<'m> Lists<'m> {
         let (mut scratch, mut seen) = pool().pop().unwrap_or_default();
         let n = self.model.vertices().len();
         let visibility = self.visibility().expect("where there is none, all pivots have one list");
-        let most = TRIANGLES_A_LIST.max(n / 8);
+        let most = TRIANGLES_A_LIST.max(n / 4);
         let looked = visibility.look_into(pivot, |_| 0, most, &mut scratch, &mut seen);
         let list = match looked {
-            Some(_) if seen.len() < n / 2 => {
+            Some(_) => {
                 let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
                 Arc::new(List::about(self.model, &self.frame, at, &seen))
             }
-            _ => Arc::clone(self.all()),
+            None => Arc::clone(self.all()),
         };
         pool().push((scratch, seen));
         let entry = &self.entries[pivot as usize];
