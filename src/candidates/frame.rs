@@ -1,6 +1,6 @@
 //! The frame in which the candidate pass works: the scene moved to the origin and scaled to unit size.
 
-use glam::{DVec2, Vec2};
+use glam::DVec2;
 
 use crate::scene::Model;
 
@@ -42,10 +42,5 @@ impl Frame {
     #[inline]
     pub fn scaled(&self, length: f64) -> f64 {
         length * self.scale
-    }
-
-    /// All of the model's vertices in the frame, in f32, in their order.
-    pub fn vertices(&self, model: &Model) -> Vec<Vec2> {
-        model.vertices().iter().map(|&p| self.place(p).as_vec2()).collect()
     }
 }
