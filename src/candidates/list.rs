@@ -6,71 +6,118 @@ use super::simd::{Simd, VERTICES};
 use super::{Frame, Query};
 use crate::scene::Model;
 
+/// How many vertices share a distance, that of the nearest: few, so that a query tries few too many; several, so that
+/// finding how far it reaches takes one or two lines of the cache.
+const GROUP: usize = 4;
+
 /// The vertices that one pivot's queries try, the nearest first: their numbers, and their coordinates in the frame.
 #[derive(Debug)]
 pub struct List {
-    pub(super) numbers: Box<[u32]>,
-    /// The squares of their distances from the pivot, in the scene's unit; 0 where the list is for any pivot.
-    squared: Box<[f64]>,
-    /// Coordinates in the frame, filled up with NaN, which lies in no triangle, to a multiple of what is tried at once.
-    pub(super) x: Box<[f32]>,
-    pub(super) y: Box<[f32]>,
+    /// How many vertices there are.
+    len: usize,
+    /// The square of the distance from the pivot beyond which vertices may be missing.
+    reach: f64,
+    /// The square of the distance from the pivot of the first vertex of each group, as its [`key`]; empty where the list is
+    /// for any pivot.
+    nearest: Box<[u32]>,
+    /// The last is filled up with NaN, which lies in no triangle.
+    pub(super) places: Box<[Places]>,
+}
+
+/// Coordinates of [`VERTICES`] vertices in the frame, and their numbers.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub(super) struct Places {
+    pub x: [f32; VERTICES],
+    pub y: [f32; VERTICES],
+    pub numbers: [u32; VERTICES],
 }
 
 impl List {
-    /// The vertices of these numbers, for queries about `pivot`. O(vertices log vertices).
-    pub fn about(model: &Model, frame: &Frame, pivot: DVec2, numbers: &[u32]) -> Self {
-        let squared = |&v: &u32| (model.vertices()[v as usize].distance_squared(pivot), v);
-        let mut near: Vec<(f64, u32)> = numbers.iter().map(squared).collect();
-        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        Self::new(model, frame, near)
+    /// The vertices of these numbers, for queries about `pivot` whose points are no further from it than the square root of
+    /// `reach`. O(vertices log vertices).
+    pub fn about(model: &Model, frame: &Frame, pivot: DVec2, reach: f64, numbers: &[u32]) -> Self {
+        let keyed = |&v: &u32| {
+            let squared = model.vertices()[v as usize].distance_squared(pivot);
+            u64::from(key(squared)) << 32 | u64::from(v)
+        };
+        let mut near: Vec<u64> = numbers.iter().map(keyed).collect();
+        near.sort_unstable();
+        let nearest = near.iter().step_by(GROUP).map(|keyed| (keyed >> 32) as u32).collect();
+        Self::new(model, frame, near.iter().map(|&keyed| keyed as u32), nearest, reach)
     }
 
     /// All vertices of the model, for queries about any pivot.
     pub fn all(model: &Model, frame: &Frame) -> Self {
-        Self::new(model, frame, (0..model.vertices().len() as u32).map(|v| (0.0, v)).collect())
+        Self::new(model, frame, 0..model.vertices().len() as u32, Box::default(), f64::INFINITY)
     }
 
-    fn new(model: &Model, frame: &Frame, vertices: Vec<(f64, u32)>) -> Self {
-        let size = vertices.len().next_multiple_of(VERTICES);
-        let (mut x, mut y) = (Vec::with_capacity(size), Vec::with_capacity(size));
-        for &(_, v) in &vertices {
+    fn new(
+        model: &Model,
+        frame: &Frame,
+        vertices: impl ExactSizeIterator<Item = u32>,
+        nearest: Box<[u32]>,
+        reach: f64,
+    ) -> Self {
+        let empty = Places { x: [f32::NAN; VERTICES], y: [f32::NAN; VERTICES], numbers: [0; VERTICES] };
+        let len = vertices.len();
+        let mut places = vec![empty; len.div_ceil(VERTICES)];
+        for (i, v) in vertices.enumerate() {
+            let (block, i) = (&mut places[i / VERTICES], i % VERTICES);
             let p = frame.place(model.vertices()[v as usize]).as_vec2();
-            x.push(p.x);
-            y.push(p.y);
+            (block.x[i], block.y[i], block.numbers[i]) = (p.x, p.y, v);
         }
-        x.resize(size, f32::NAN);
-        y.resize(size, f32::NAN);
-        let (squared, numbers): (Vec<f64>, Vec<u32>) = vertices.into_iter().unzip();
-        List { numbers: numbers.into(), squared: squared.into(), x: x.into(), y: y.into() }
+        List { len, reach, nearest, places: places.into() }
+    }
+
+    /// Whether it serves queries whose points are all no further from the pivot than the square root of `squared`, in the
+    /// scene's unit; infinity for all there are.
+    #[inline]
+    pub fn reaches(&self, squared: f64) -> bool {
+        squared <= self.reach
     }
 
     /// How many vertices, from the first on, a query must try whose points are all no further from the pivot than the
     /// square root of `squared`, in the scene's unit. O(log vertices).
     #[inline]
     pub fn within(&self, squared: f64) -> usize {
+        if self.nearest.is_empty() {
+            return self.len;
+        }
         // Both are rounded: to 4 units in the last place each.
-        let squared = squared * (1.0 + 16.0 * f64::EPSILON);
-        self.squared.partition_point(|&s| s <= squared)
+        let most = key(squared * (1.0 + 16.0 * f64::EPSILON));
+        (GROUP * self.nearest.partition_point(|&nearest| nearest <= most)).min(self.len)
+    }
+
+    /// How many vertices it holds.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether it holds none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
     }
 
     /// The numbers of the vertices.
-    pub fn numbers(&self) -> &[u32] {
-        &self.numbers
+    pub fn numbers(&self) -> impl Iterator<Item = u32> {
+        self.places.iter().flat_map(|p| p.numbers).take(self.len)
+    }
+
+    /// The number of the vertex at `place`.
+    pub fn number(&self, place: usize) -> Option<u32> {
+        (place < self.len).then(|| self.places[place / VERTICES].numbers[place % VERTICES])
     }
 
     /// Their coordinates in the frame, one after the other.
     pub fn coordinates(&self) -> impl Iterator<Item = [f32; 2]> {
-        self.x.iter().zip(&self.y).take(self.numbers.len()).map(|(&x, &y)| [x, y])
+        let all = self.places.iter().flat_map(|p| p.x.iter().zip(&p.y));
+        all.take(self.len).map(|(&x, &y)| [x, y])
     }
 
     /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>()
-            + size_of_val(&*self.numbers)
-            + size_of_val(&*self.squared)
-            + size_of_val(&*self.x)
-            + size_of_val(&*self.y)
+        size_of::<Self>() + size_of_val(&*self.nearest) + size_of_val(&*self.places)
     }
 
     /// Adds the numbers of the vertices inside the triangle of `query`, of the first `count` or a few more, to `found`. The
@@ -79,4 +126,10 @@ impl List {
     pub fn sweep(&self, simd: Simd, query: &Query, count: usize, found: &mut Vec<u32>) {
         simd.sweep(self, query, count, found);
     }
+}
+
+/// A number that is no less for a larger `squared`, which is not negative: the half of its bits that says most.
+#[inline]
+fn key(squared: f64) -> u32 {
+    (squared.to_bits() >> 32) as u32
 }

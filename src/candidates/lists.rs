@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 use super::{Frame, List, Query, Simd};
 use glam::DVec2;
 
+use crate::geometry::{higher, lower};
 use crate::scene::Model;
 use crate::visibility::{Scratch, Visibility};
 
@@ -25,6 +26,9 @@ const TRIANGLES_A_LOOK: usize = 64;
 /// times as many as pivots see through where walls hide most of the scene. Pivots that see more try all vertices.
 const TRIANGLES_A_LIST: usize = 1 << 12;
 
+/// The square of how much further a pivot's first list reaches than the queries before.
+const FURTHER: f64 = 2.0;
+
 /// Which vertices each pivot's queries try.
 pub struct Lists<'m> {
     model: &'m Model,
@@ -32,6 +36,8 @@ pub struct Lists<'m> {
     keep_all: bool,
     budget: usize,
     worth: u32,
+    /// The lowest and highest x and y of all pivots and queries, if they are known.
+    reach: Option<(DVec2, DVec2)>,
     visibility: OnceLock<Option<Visibility>>,
     all: OnceLock<Arc<List>>,
     /// By pivot: vertices first, then the anchor.
@@ -48,8 +54,10 @@ struct Entry {
     list: RwLock<Option<Arc<List>>>,
     /// When it was used last.
     used: AtomicU64,
-    /// How often it would have been used before it was made.
+    /// How often it, or one that reaches further, would have been used before it was made.
     wanted: AtomicU32,
+    /// The bits of the square of how far these uses reached.
+    furthest: AtomicU64,
 }
 
 impl<'m> Lists<'m> {
@@ -61,6 +69,7 @@ impl<'m> Lists<'m> {
             keep_all: false,
             budget: LISTS_BUDGET,
             worth: WORTH_A_LIST,
+            reach: None,
             visibility: OnceLock::new(),
             all: OnceLock::new(),
             entries: (0..=model.vertices().len()).map(|_| Entry::default()).collect(),
@@ -93,8 +102,33 @@ impl<'m> Lists<'m> {
         self
     }
 
+    /// Gets ready for traces inside a box from `low` to `high`: walls out of reach of all traces are left out of the
+    /// triangulation. Returns whether what was made before had to be dropped, because these go further than any before.
+    ///
+    /// Lists that were used before they were told of any trace are ready for all.
+    pub fn cover(&mut self, (low, high): (DVec2, DVec2)) -> bool {
+        let anchor = self.model.anchor();
+        let (mut low, mut high) = (lower(low, anchor), higher(high, anchor));
+        let is_made = self.visibility.get().is_some();
+        if is_made && self.reach.is_none_or(|(l, h)| l.cmple(low).all() && h.cmpge(high).all()) {
+            return false;
+        }
+        if let Some((l, h)) = self.reach {
+            (low, high) = (lower(low, l), higher(high, h));
+        }
+        if is_made {
+            // A good deal further, so that this is rarely done.
+            let more = (high - low) / 2.0;
+            (low, high) = (low - more, high + more);
+            self.forget();
+        }
+        self.reach = Some((low, high));
+        is_made
+    }
+
     /// Drops all lists and the triangulation from which they were made.
     pub fn forget(&mut self) {
+        self.reach = None;
         self.visibility.take();
         self.all.take();
         self.entries.iter_mut().for_each(|entry| *entry = Entry::default());
@@ -143,21 +177,33 @@ impl<'m> Lists<'m> {
         self.entries.len() + 1
     }
 
-    /// The list of `pivot` (a vertex, or the number of vertices for the anchor), for one query or several. `None` as long as
-    /// that is not worth making: then [`look_into`](Self::look_into) answers.
+    /// The list of `pivot` (a vertex, or the number of vertices for the anchor), for queries whose points are all no further
+    /// from it than the square root of `squared`, in the scene's unit; infinity for any. `None` as long as that is not worth
+    /// making: then [`look_into`](Self::look_into) answers.
     ///
-    /// See [`Visibility::look`] for what is in it and what making it costs.
-    pub fn of(&self, pivot: u32) -> Option<Arc<List>> {
+    /// A pivot's first list goes a little further than its queries so far; the second goes all the way. See
+    /// [`Visibility::look`] for what is in it and what making it costs.
+    pub fn of(&self, pivot: u32, squared: f64) -> Option<Arc<List>> {
         let entry = &self.entries[pivot as usize];
-        if let Some(list) = &*entry.list.read().unwrap_or_else(PoisonError::into_inner) {
-            entry.used.store(self.made(), Ordering::Relaxed);
+        let list = entry.list.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(list) = list.as_ref().filter(|list| list.reaches(squared)) {
+            // Written only if it changes, so that the threads need not take it from each other.
+            if entry.used.load(Ordering::Relaxed) != self.made() {
+                entry.used.store(self.made(), Ordering::Relaxed);
+            }
             return Some(Arc::clone(list));
         }
         if self.keeps_all() {
             return Some(Arc::clone(self.all()));
         }
-        let wanted = entry.wanted.fetch_add(1, Ordering::Relaxed);
-        (wanted >= self.worth).then(|| self.make(pivot))
+        // Bits of numbers that are not negative compare as the numbers do.
+        let furthest = f64::from_bits(entry.furthest.fetch_max(squared.to_bits(), Ordering::Relaxed)).max(squared);
+        if entry.wanted.fetch_add(1, Ordering::Relaxed) < self.worth {
+            return None;
+        }
+        let reach = if list.is_none() { FURTHER * furthest } else { f64::INFINITY };
+        drop(list);
+        Some(self.make(pivot, reach))
     }
 
     /// Adds the candidates of a query about `pivot` to `found`, without a list of its own, and returns how many vertices were
@@ -192,22 +238,28 @@ impl<'m> Lists<'m> {
     }
 
     fn visibility(&self) -> Option<&Visibility> {
-        self.visibility.get_or_init(|| Visibility::new(self.model)).as_ref()
+        self.visibility.get_or_init(|| Visibility::within(self.model, self.reach())).as_ref()
+    }
+
+    fn reach(&self) -> (DVec2, DVec2) {
+        self.reach.unwrap_or_else(|| self.model.bounds())
     }
 
     #[cold]
-    fn make(&self, pivot: u32) -> Arc<List> {
+    fn make(&self, pivot: u32, reach: f64) -> Arc<List> {
         let pool = || self.looks.lock().unwrap_or_else(PoisonError::into_inner);
         let (mut scratch, mut seen) = pool().pop().unwrap_or_default();
         let n = self.model.vertices().len();
         let visibility = self.visibility().expect("where there is none, all pivots have one list");
         let most = TRIANGLES_A_LIST.max(n / 4);
-        let looked = visibility.look_into(pivot, |_| 0, most, &mut scratch, &mut seen);
+        let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
+        let looked = if reach == f64::INFINITY {
+            visibility.look_into(pivot, |_| 0, most, &mut scratch, &mut seen)
+        } else {
+            visibility.look_into(pivot, octagon(at, reach.sqrt()), most, &mut scratch, &mut seen)
+        };
         let list = match looked {
-            Some(_) => {
-                let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
-                Arc::new(List::about(self.model, &self.frame, at, &seen))
-            }
+            Some(_) => Arc::new(List::about(self.model, &self.frame, at, reach, &seen)),
             None => Arc::clone(self.all()),
         };
         pool().push((scratch, seen));
@@ -215,13 +267,16 @@ impl<'m> Lists<'m> {
         {
             // All of it under the lock, so that nobody drops a list whose bytes do not count yet.
             let mut slot = entry.list.write().unwrap_or_else(PoisonError::into_inner);
-            if let Some(list) = &*slot {
+            if let Some(list) = slot.as_ref().filter(|list| list.reaches(reach)) {
                 // Another thread has made it meanwhile.
                 return Arc::clone(list);
             }
+            entry.wanted.store(0, Ordering::Relaxed);
             entry.used.store(self.made.fetch_add(1, Ordering::Relaxed), Ordering::Relaxed);
             self.bytes.fetch_add(self.own_bytes(&list), Ordering::Relaxed);
-            *slot = Some(Arc::clone(&list));
+            if let Some(shorter) = slot.replace(Arc::clone(&list)) {
+                self.bytes.fetch_sub(self.own_bytes(&shorter), Ordering::Relaxed);
+            }
         }
         if self.bytes() > self.budget {
             self.drop_some();
@@ -252,5 +307,17 @@ impl<'m> Lists<'m> {
             self.entries[pivot].wanted.store(0, Ordering::Relaxed);
             self.bytes.fetch_sub(dropped.map_or(0, |d| self.own_bytes(&d)), Ordering::Relaxed);
         }
+    }
+}
+
+/// Bits for the sides of an octagon about `o` outside which a point lies; all that is within `radius` lies inside.
+fn octagon(o: DVec2, radius: f64) -> impl Fn(DVec2) -> u8 {
+    // A little larger, so that what is within `radius` lies inside whichever way the sums are rounded.
+    let side = radius * (1.0 + 2f64.powi(-40));
+    let corner = side * std::f64::consts::SQRT_2;
+    move |p| {
+        let DVec2 { x, y } = p - o;
+        let sides = [(x, side), (y, side), (x + y, corner), (x - y, corner)];
+        sides.iter().fold(0, |bits, &(d, far)| bits << 2 | u8::from(d > far) << 1 | u8::from(d < -far))
     }
 }

@@ -8,6 +8,7 @@
 use glam::DVec2;
 use pulp::{Arch, WithSimd};
 
+use super::list::Places;
 use super::window::Wrapping;
 use super::{List, Query, Slopes};
 
@@ -220,12 +221,10 @@ fn bit_if(condition: bool, bit: u64) -> u64 {
 
 #[inline(always)]
 fn sweep_list(list: &List, query: &Query, count: usize, found: &mut Vec<u32>) {
-    let (x, _) = list.x.as_chunks::<VERTICES>();
-    let (y, _) = list.y.as_chunks::<VERTICES>();
-    for (block, (x, y)) in x.iter().zip(y).take(count.div_ceil(VERTICES)).enumerate() {
-        let mut inside = inside_block(query, x, y);
+    for places in list.places.iter().take(count.div_ceil(VERTICES)) {
+        let mut inside = inside_block(query, places);
         while inside != 0 {
-            found.push(list.numbers[block * VERTICES + inside.trailing_zeros() as usize]);
+            found.push(places.numbers[inside.trailing_zeros() as usize % VERTICES]);
             inside &= inside - 1;
         }
     }
@@ -233,7 +232,7 @@ fn sweep_list(list: &List, query: &Query, count: usize, found: &mut Vec<u32>) {
 
 /// One block of vertices: bit i is set if vertex i is inside.
 #[inline(always)]
-fn inside_block(query: &Query, x: &[f32; VERTICES], y: &[f32; VERTICES]) -> u32 {
+fn inside_block(query: &Query, Places { x, y, .. }: &Places) -> u32 {
     const LANES: usize = 2 * BLOCK;
     let (mut inside, mut bit): (_, [u32; LANES]) = ([0; LANES], std::array::from_fn(|j| 1 << j));
     for i in (0..VERTICES).step_by(LANES) {

@@ -180,8 +180,8 @@ impl<'a> Slot<'a> {
             Some(places) => {
                 let candidates = &mut candidates[..places.len()];
                 for (candidate, place) in candidates.iter_mut().zip(places) {
-                    match asked.list.numbers().get(place.wrapping_sub(first) as usize) {
-                        Some(&vertex) => *candidate = vertex,
+                    match asked.list.number(place.wrapping_sub(first) as usize) {
+                        Some(vertex) => *candidate = vertex,
                         None => return shared.astray.store(true, Ordering::Relaxed),
                     }
                 }
@@ -226,7 +226,7 @@ impl<'a> Slot<'a> {
             });
             if trace.violation().is_none() {
                 let pivot = self.course.pivot(model);
-                match shared.job.time(Phase::Queries, || lists.of(pivot)) {
+                match shared.job.time(Phase::Queries, || lists.of(pivot, f64::INFINITY)) {
                     Some(list) => {
                         let count = list.within(self.course.squared(trace)) as u32;
                         let query = Query { count, ..query };

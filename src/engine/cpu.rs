@@ -1,17 +1,22 @@
 //! The window pipeline for machines without a GPU: one trace after the other on each thread.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::course::Course;
 use super::{Engine, EngineError, Job, Phase, WINDOW};
-use crate::candidates::{Lists, ROOM, Simd, Slopes};
+use crate::candidates::{List, Lists, ROOM, Simd, Slopes};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
-use crate::trace::SettledTrace;
+use crate::trace::{SettledTrace, bounds};
 use crate::visibility::Scratch;
 
 /// After how many steps of a trace the job is told of them, so that the threads do not fight for its counter.
 const TELL: usize = 1 << 12;
+
+/// How many lists each thread keeps at hand.
+const RECENT: usize = 256;
 
 /// Evaluates traces on all cores, for one model.
 pub struct Cpu<'m> {
@@ -64,6 +69,9 @@ impl Engine for Cpu<'_> {
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        if let Some(bounds) = bounds(traces) {
+            self.lists.cover(bounds);
+        }
         let this = &*self;
         let lane = || Lane {
             engine: this,
@@ -71,6 +79,7 @@ impl Engine for Cpu<'_> {
             slopes: Slopes::default(),
             scratch: Scratch::default(),
             found: Vec::new(),
+            recent: std::array::from_fn(|_| None),
         };
         traces.par_iter().map_init(lane, |lane, trace| lane.evaluate(trace, job)).collect()
     }
@@ -88,6 +97,9 @@ struct Lane<'e, 'm> {
     scratch: Scratch,
     /// The candidates of the current window.
     found: Vec<u32>,
+    /// The lists used last, by pivot: ropes come back to the pivots from which they came, and what a thread has at hand it
+    /// need not ask the others for.
+    recent: [Option<(u32, Arc<List>)>; RECENT],
 }
 
 impl Lane<'_, '_> {
@@ -95,8 +107,6 @@ impl Lane<'_, '_> {
         let Cpu { lists, window, simd } = self.engine;
         let model = lists.model();
         self.course.start(model, trace);
-        // The list of the last pivot that had one.
-        let mut list = None;
         let (mut told, mut tests) = (0, 0);
         loop {
             if let Some(record) = self.course.finished(trace) {
@@ -120,13 +130,18 @@ impl Lane<'_, '_> {
                 continue;
             }
             let pivot = self.course.pivot(model);
-            if list.as_ref().is_none_or(|&(of, _)| of != pivot) {
-                list = job.time(Phase::Queries, || lists.of(pivot)).map(|list| (pivot, list));
+            let squared = self.course.squared(trace);
+            let serves = |(of, list): &&(u32, Arc<List>)| *of == pivot && list.reaches(squared);
+            let list = &mut self.recent[pivot as usize % RECENT];
+            if list.as_ref().filter(serves).is_none()
+                && let Some(own) = job.time(Phase::Queries, || lists.of(pivot, squared))
+            {
+                *list = Some((pivot, own));
             }
             self.found.clear();
-            tests += job.time(Phase::Kernel, || match &list {
+            tests += job.time(Phase::Kernel, || match list.as_ref().filter(serves) {
                 Some((_, list)) => {
-                    let count = list.within(self.course.squared(trace));
+                    let count = list.within(squared);
                     list.sweep(*simd, &query, count, &mut self.found);
                     count
                 }

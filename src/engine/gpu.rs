@@ -5,7 +5,7 @@ use crate::candidates::{LISTS_BUDGET, Lists};
 use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass, HALVES, SWEEP_WGSL, Tuning};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
-use crate::trace::SettledTrace;
+use crate::trace::{SettledTrace, bounds};
 
 /// Evaluates traces on a GPU, for one model.
 pub struct Gpu<'m> {
@@ -74,6 +74,9 @@ impl Engine for Gpu<'_> {
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        if bounds(traces).is_some_and(|bounds| self.lists.cover(bounds)) {
+            self.pass.forget();
+        }
         batch::evaluate(&mut self.pass, &self.lists, self.window, traces, job)
     }
 

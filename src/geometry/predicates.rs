@@ -3,6 +3,9 @@
 use glam::DVec2;
 use robust::Coord;
 
+/// Of which share of its two products an area must be to have the right sign: Shewchuk's bound `ccwerrboundA`.
+const CERTAIN: f64 = (3.0 + 8.0 * f64::EPSILON) * (f64::EPSILON / 2.0);
+
 fn coord(p: DVec2) -> Coord<f64> {
     Coord { x: p.x, y: p.y }
 }
@@ -10,8 +13,9 @@ fn coord(p: DVec2) -> Coord<f64> {
 /// A number with the exact sign of the signed area of the triangle `p`, `q`, `r`: above 0 when `r` lies left of
 /// `p -> q`, below 0 when right of it, 0 when the three lie on one line.
 ///
-/// Only the sign means anything. Exact for points within the limits of [`check_point`](super::check_point)
-/// (Shewchuk's adaptive predicate).
+/// Only the sign means anything. Exact for points within the limits of [`check_point`](super::check_point), between
+/// which nothing here under- or overflows (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
+/// geometric predicates", Discrete Comput. Geom. 18, 1997).
 ///
 /// ```
 /// use tautline::geometry::orient;
@@ -19,6 +23,15 @@ fn coord(p: DVec2) -> Coord<f64> {
 /// ```
 #[inline]
 pub fn orient(p: DVec2, q: DVec2, r: DVec2) -> f64 {
+    // The library's own first test asks for the sign before it knows that it is certain: where signs are random, a
+    // branch that nothing predicts.
+    let (left, right) = ((p.x - r.x) * (q.y - r.y), (p.y - r.y) * (q.x - r.x));
+    let area = left - right;
+    if area.abs() >= CERTAIN * (left.abs() + right.abs()) { area } else { uncertain(p, q, r) }
+}
+
+#[cold]
+fn uncertain(p: DVec2, q: DVec2, r: DVec2) -> f64 {
     robust::orient2d(coord(p), coord(q), coord(r))
 }
 

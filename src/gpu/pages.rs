@@ -94,7 +94,7 @@ impl Pages {
             return Some(known);
         }
         // An empty list takes a place too, so that it lies in the block in which it is.
-        let size = (list.numbers().len() as u32).max(1);
+        let size = (list.len() as u32).max(1);
         let start = match self.blocks.get(self.open).and_then(|block| self.fit(block.filled, size)) {
             Some(start) => start,
             None => {

@@ -19,7 +19,7 @@ use glam::DVec2;
 
 pub use read::{TraceReader, read_traces};
 pub use settle::{settle, settle_owned};
-pub use settled::{SettledTrace, Violation, ViolationKind};
+pub use settled::{SettledTrace, Violation, ViolationKind, bounds};
 
 /// One trace: its number and its points, in the scene's frame and unit.
 ///

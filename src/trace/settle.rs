@@ -148,7 +148,7 @@ impl Layout {
 
     fn settle(self, model: &Model, id: u64, points: Vec<DVec2>) -> SettledTrace {
         let added = self.inserted.iter().map(|p| p.0).collect();
-        let mut settled = SettledTrace { id, points, added, hairs: Vec::new(), violation: self.violation };
+        let mut settled = SettledTrace::new(id, points, added, self.violation);
         if !self.touching.is_empty() {
             pluck(model, &mut settled, &self.touching);
         }

@@ -12,7 +12,8 @@ use crate::geometry::{between, opposite, orient, same_side};
 use crate::scene::{Model, Scene};
 
 fn settle_plainly(model: &Model, trace: &Trace) -> SettledTrace {
-    let mut settled = SettledTrace { id: trace.id, points: vec![], added: vec![], hairs: vec![], violation: None };
+    let mut settled = SettledTrace::new(trace.id, vec![model.anchor()], vec![], None);
+    settled.points.clear();
     let mut touching = vec![];
     let mut add = |settled: &mut SettledTrace, at: DVec2, ends_step: bool| {
         let i = settled.points.len() as u32;
@@ -41,6 +42,11 @@ fn settle_plainly(model: &Model, trace: &Trace) -> SettledTrace {
             }
         }
     }
+    let [x, y] = [0, 1].map(|axis| settled.points.iter().map(move |p| p[axis]));
+    let [low, high] = [f64::min, f64::max].map(|f: fn(f64, f64) -> f64| {
+        DVec2::new(x.clone().reduce(f).expect("a trace has points"), y.clone().reduce(f).expect("a trace has points"))
+    });
+    settled.bounds = (low, high);
     pluck_stays(model, &mut settled, &stays);
     settled
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::geometry::{Hair, Shown, TracePoint};
+use crate::geometry::{Hair, Shown, TracePoint, higher, lower};
 
 /// What a trace does that a rope among solid walls cannot follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,9 +62,22 @@ pub struct SettledTrace {
     /// The hairs by point index, ascending.
     pub(super) hairs: Vec<(u32, Hair)>,
     pub(super) violation: Option<Violation>,
+    pub(super) bounds: (DVec2, DVec2),
+}
+
+/// The lowest and the highest x and y of all points of all traces; `None` if there are no traces. O(traces).
+pub fn bounds(traces: &[SettledTrace]) -> Option<(DVec2, DVec2)> {
+    traces.iter().map(SettledTrace::bounds).reduce(|(l, h), (low, high)| (lower(l, low), higher(h, high)))
 }
 
 impl SettledTrace {
+    /// A trace without hairs. Panics if it has no points.
+    pub(super) fn new(id: u64, points: Vec<DVec2>, added: Vec<u32>, violation: Option<Violation>) -> Self {
+        let first = points[0];
+        let bounds = points.iter().fold((first, first), |(low, high), &p| (lower(low, p), higher(high, p)));
+        SettledTrace { id, points, added, hairs: Vec::new(), violation, bounds }
+    }
+
     /// The trace's number.
     pub fn id(&self) -> u64 {
         self.id
@@ -73,6 +86,11 @@ impl SettledTrace {
     /// Where the points stand, those added included.
     pub fn points(&self) -> &[DVec2] {
         &self.points
+    }
+
+    /// The lowest and the highest x and y of all points. O(1).
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        self.bounds
     }
 
     /// Whether every point is one of the trace's own and none stands on a vertex: the trace starts at the anchor and touches

@@ -2,22 +2,24 @@
 
 use glam::DVec2;
 
-use super::mesh::{CLOSED, Mesh, next};
+use super::mesh::{CLOSED, HalfEdge, Mesh, next};
 use crate::geometry::orient;
 
 /// Memory that looks share, one after the other.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    /// The look in which each vertex was seen last.
+    /// The look in which each vertex of the mesh was seen last.
     seen_in: Vec<u32>,
     look: u32,
+    /// The views of the current look, those already looked at included, and room for two more.
     views: Vec<View>,
+    /// The vertices seen, and room for one more.
+    seen: Vec<u32>,
 }
 
 impl Scratch {
     /// Starts a look at a mesh of `vertices` vertices.
     fn start(&mut self, vertices: usize) {
-        self.views.clear();
         if self.look == u32::MAX || self.seen_in.len() != vertices {
             self.seen_in.clear();
             self.seen_in.resize(vertices, 0);
@@ -26,38 +28,41 @@ impl Scratch {
         self.look += 1;
     }
 
-    /// Adds what lies behind `edge`, unless nothing is to be seen there.
+    /// Makes room where `views` views and `seen` vertices are.
     #[inline]
-    fn look_behind(&mut self, edge: u32, view: View) {
-        let is_outside = view.ends[0] & view.ends[1] != 0 || view.right.outside & view.left.outside != 0;
-        if edge != CLOSED && !is_outside {
-            self.views.push(View { edge, ..view });
+    fn make_room(&mut self, views: usize, seen: usize) {
+        if views + 2 > self.views.len() {
+            self.views.resize(2 * views + 64, View::default());
+        }
+        if seen + 1 > self.seen.len() {
+            self.seen.resize(2 * seen + 64, 0);
         }
     }
 }
 
-/// A vertex seen.
-#[derive(Debug, Clone, Copy)]
-struct Seen {
-    vertex: u32,
-    /// Outside which of the lines that bound the look it lies, as bits.
-    outside: u8,
-}
-
 /// What is still to be looked at: the triangle behind an edge, between two rays.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct View {
     /// The edge as seen from inside the triangle to be looked at.
     edge: u32,
-    /// Outside which lines its right and its left end lie.
-    ends: [u8; 2],
     /// The vertices that bound the view.
-    right: Seen,
-    left: Seen,
+    right: u32,
+    left: u32,
+    /// Outside which lines they lie, in the lowest two bytes, and the edge's right and left end, in the highest.
+    outside: [u8; 4],
+}
+
+impl View {
+    /// Whether there is anything to be seen.
+    #[inline]
+    fn is_open(&self) -> bool {
+        let [right, left, first, last] = self.outside;
+        (self.edge != CLOSED) & (right & left | first & last == 0)
+    }
 }
 
 impl Mesh {
-    /// Adds all vertices of the model that are visible from mesh vertex `o`, in the closed sense, to `seen`, each once, and
+    /// Writes all vertices that are visible from mesh vertex `o`, in the closed sense, into `seen`, the model's each once, and
     /// returns how many triangles were looked at; `None` if it gave up because they were more than `most`.
     ///
     /// A view is an open cone between two vertices seen before; what lies in it or on its bounding rays is listed. So a
@@ -76,50 +81,65 @@ impl Mesh {
         outside: impl Fn(DVec2) -> u8,
         most: usize,
     ) -> Option<usize> {
-        scratch.start(self.real() as usize);
+        scratch.start(self.len());
         let at = self.at(o);
-        let look = |vertex| Seen { vertex, outside: outside(self.at(vertex)) };
+        let (mut views, mut listed) = (0, 0);
+        // Whether a view is followed and a vertex new is as good as random, so both are written down in any case and
+        // then kept or not: a branch would cost more than the rest. Views are taken in the order in which they were
+        // found, so that the next ones do not wait for the current one's.
         for &spoke in self.fan(o) {
+            scratch.make_room(views, listed + 1);
             let across = next(spoke);
-            let (right, left) = (look(self.edge(across).origin), look(self.edge(next(across)).origin));
-            self.see(right, scratch, seen);
-            self.see(left, scratch, seen);
+            let ends = [self.edge(across).origin, self.edge(next(across)).origin];
+            let [right, left] = ends.map(|vertex| outside(self.at(vertex)));
+            for (vertex, outside) in ends.into_iter().zip([right, left]) {
+                listed += self.see(vertex, outside == 0, listed, scratch);
+            }
             let edge = self.edge(across).twin;
-            scratch.look_behind(edge, View { edge, ends: [right.outside, left.outside], right, left });
+            let view = View { edge, right: ends[0], left: ends[1], outside: [right, left, right, left] };
+            scratch.views[views] = view;
+            views += usize::from(view.is_open());
         }
-        let mut triangles = self.fan(o).len();
-        while let Some(View { edge, ends, right, left }) = scratch.views.pop() {
-            triangles += 1;
-            if triangles > most {
+        let spokes = self.fan(o).len();
+        let mut done = 0;
+        while done < views {
+            if spokes + done >= most {
                 return None;
             }
+            scratch.make_room(views, listed);
+            let View { edge, right, left, outside: [right_out, left_out, first_out, last_out] } = scratch.views[done];
+            done += 1;
             // The triangle behind the edge: from the edge's right end to the apex, and from the apex to its left end.
-            let to_apex = self.edge(next(edge));
-            let from_apex = self.edge(next(next(edge)));
-            let apex = look(from_apex.origin);
-            let p = self.at(apex.vertex);
-            let from_right = orient(at, self.at(right.vertex), p);
-            let from_left = orient(at, self.at(left.vertex), p);
-            if from_right >= 0.0 && from_left <= 0.0 {
-                self.see(apex, scratch, seen);
-            }
-            if from_right > 0.0 {
-                let left = if from_left < 0.0 { apex } else { left };
-                scratch.look_behind(to_apex.twin, View { edge, ends: [ends[0], apex.outside], right, left });
-            }
-            if from_left < 0.0 {
-                let right = if from_right > 0.0 { apex } else { right };
-                scratch.look_behind(from_apex.twin, View { edge, ends: [apex.outside, ends[1]], right, left });
-            }
+            let [to_apex, HalfEdge { origin: apex, twin: from_apex }] = self.beyond(edge);
+            let p = self.at(apex);
+            let out = outside(p);
+            let from_right = orient(at, self.at(right), p);
+            let from_left = orient(at, self.at(left), p);
+            let is_inside = (from_right >= 0.0) & (from_left <= 0.0) & (out == 0);
+            listed += self.see(apex, is_inside, listed, scratch);
+
+            let (nearer, nearer_out) = if from_left < 0.0 { (apex, out) } else { (left, left_out) };
+            let view =
+                View { edge: to_apex.twin, right, left: nearer, outside: [right_out, nearer_out, first_out, out] };
+            scratch.views[views] = view;
+            views += usize::from((from_right > 0.0) & view.is_open());
+
+            let (nearer, nearer_out) = if from_right > 0.0 { (apex, out) } else { (right, right_out) };
+            let view = View { edge: from_apex, right: nearer, left, outside: [nearer_out, left_out, out, last_out] };
+            scratch.views[views] = view;
+            views += usize::from((from_left < 0.0) & view.is_open());
         }
-        Some(triangles)
+        seen.extend_from_slice(&scratch.seen[..listed]);
+        Some(spokes + done)
     }
 
+    /// Writes `vertex` down as the one behind the `listed`, and returns 1 if it is to be kept: seen, and not before.
     #[inline]
-    fn see(&self, Seen { vertex, outside }: Seen, scratch: &mut Scratch, seen: &mut Vec<u32>) {
-        if outside == 0 && vertex < self.real() && scratch.seen_in[vertex as usize] != scratch.look {
-            scratch.seen_in[vertex as usize] = scratch.look;
-            seen.push(vertex);
-        }
+    fn see(&self, vertex: u32, is_seen: bool, listed: usize, scratch: &mut Scratch) -> usize {
+        let last = &mut scratch.seen_in[vertex as usize];
+        let is_new = is_seen & (*last != scratch.look);
+        *last = if is_seen { scratch.look } else { *last };
+        scratch.seen[listed] = vertex;
+        usize::from(is_new)
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::crossings::crossings;
-use crate::geometry::{between, orient};
+use crate::geometry::{between, higher, lower, orient};
 use crate::scene::Model;
 
 /// Into how many pieces walls may be cut by vertices that lie on them, on average, before the rest stays out, which is safe:
@@ -14,8 +14,8 @@ const PIECES: usize = 16;
 /// Marks an edge through which one cannot see: a wall, or the mesh's outer border.
 pub(super) const CLOSED: u32 = u32::MAX;
 
-/// An edge of a triangle as seen from inside it. Half-edges 3t, 3t + 1 and 3t + 2 are those of triangle t,
-/// counter-clockwise.
+/// An edge of a triangle as seen from inside it. Half-edges 4t, 4t + 1 and 4t + 2 are those of triangle t,
+/// counter-clockwise; 4t + 3 is none.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HalfEdge {
     /// The vertex at which it starts.
@@ -24,34 +24,77 @@ pub(super) struct HalfEdge {
     pub twin: u32,
 }
 
-/// The triangulation. Its first vertices are the model's; then come the anchor (unless it is one of them), crossings of
-/// walls, and four corners far outside.
+/// A triangle's half-edges, in one line of the cache.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(32))]
+struct Triangle([HalfEdge; 4]);
+
+/// The triangulation. Its vertices are the model's, the anchor, crossings of walls, and four corners far outside,
+/// numbered along a curve that fills the plane, and so are its triangles: what lies near each other does so in memory.
 pub(super) struct Mesh {
     vertices: Vec<DVec2>,
-    /// How many of the vertices are the model's.
-    real: u32,
-    anchor: u32,
-    edges: Vec<HalfEdge>,
+    walls: Vec<[u32; 2]>,
+    /// The model's number of each vertex, or [`ABSENT`].
+    names: Vec<u32>,
+    /// The vertex of each pivot, the model's vertices and then the anchor, or [`ABSENT`].
+    pivots: Vec<u32>,
+    triangles: Vec<Triangle>,
     /// The half-edges that start at each vertex, and where each vertex's begin.
     fans: Vec<u32>,
     first_fan: Vec<u32>,
 }
 
+/// The name of a vertex that is none of the model's, and the vertex of a pivot that is not in the mesh.
+pub(super) const ABSENT: u32 = u32::MAX;
+
 type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 impl Mesh {
-    /// `None` where the triangulation cannot take the coordinates.
-    pub(super) fn new(model: &Model) -> Option<Mesh> {
-        let mut vertices = model.vertices().to_vec();
-        let real = vertices.len() as u32;
-        let anchor = model.vertex_at(model.anchor()).unwrap_or(real);
-        if anchor == real {
-            vertices.push(model.anchor());
+    /// The part that looks inside the box of `reach` can see. `None` where the triangulation cannot take the coordinates.
+    pub(super) fn new(model: &Model, (low, high): (DVec2, DVec2)) -> Option<Mesh> {
+        let real = model.vertices().len();
+        let is_near = |&wall: &u32| {
+            let [a, b] = model.scene().ends(wall as usize);
+            lower(a, b).cmple(high).all() && higher(a, b).cmpge(low).all()
+        };
+        let near: Vec<u32> = (0..model.scene().walls().len() as u32).filter(is_near).collect();
+        let ends = || near.iter().map(|&wall| model.scene().walls()[wall as usize]);
+
+        let mut places = Vec::new();
+        let mut names = Vec::new();
+        let mut pivots = vec![ABSENT; real + 1];
+        for v in ends().flatten() {
+            if pivots[v as usize] == ABSENT {
+                pivots[v as usize] = 0;
+                places.push(model.vertices()[v as usize]);
+                names.push(v);
+            }
         }
-        vertices.extend(crossings(model));
-        vertices.extend(corners(model));
+        let anchor = model.vertex_at(model.anchor());
+        if anchor.is_none_or(|v| pivots[v as usize] == ABSENT) {
+            places.push(model.anchor());
+            names.push(anchor.unwrap_or(real as u32));
+        }
+        places.extend(crossings(model, &near));
+        let bounds = places.iter().fold((places[0], places[0]), |(l, h), &p| (lower(l, p), higher(h, p)));
+        places.extend(corners(bounds));
+        names.resize(places.len(), ABSENT);
+
+        let order = along_curve(&places, bounds);
+        let vertices: Vec<DVec2> = order.iter().map(|&place| places[place as usize]).collect();
+        let mut names: Vec<u32> = order.iter().map(|&place| names[place as usize]).collect();
+        for (here, name) in (0..).zip(&mut names).filter(|(_, name)| **name != ABSENT) {
+            pivots[*name as usize] = here;
+            if *name == real as u32 {
+                *name = ABSENT;
+            }
+        }
+        if let Some(anchor) = anchor {
+            pivots[real] = pivots[anchor as usize];
+        }
+
+        let walls: Vec<[u32; 2]> = ends().map(|wall| wall.map(|v| pivots[v as usize])).collect();
         let mut cdt = triangulate(&vertices)?;
-        let walls = model.scene().walls();
         let (mut added, mut room) = (0, PIECES * walls.len());
         while added < walls.len() && room > 0 {
             // A wall that crosses another where no vertex is stays out: it then hides nothing, which is safe.
@@ -59,47 +102,70 @@ impl Mesh {
             room = room.saturating_sub(cdt.try_add_constraint(u, v).len());
             added += 1;
         }
-        let mut mesh = Mesh::from_cdt(&cdt, vertices, real, anchor);
-        mesh.close(&cdt, &walls[..added]);
+        let mut mesh = Mesh { vertices, walls, names, pivots, triangles: vec![], fans: vec![], first_fan: vec![] };
+        mesh.take_triangles(&cdt);
+        mesh.close(&cdt, added);
         Some(mesh)
     }
 
-    fn from_cdt(cdt: &Cdt, vertices: Vec<DVec2>, real: u32, anchor: u32) -> Mesh {
-        let mut edges = Vec::with_capacity(3 * cdt.num_inner_faces());
+    fn take_triangles(&mut self, cdt: &Cdt) {
+        let n = self.vertices.len();
+        // Of each of the library's triangles: its vertices, its edges, and the same edges as seen from outside.
+        let faces: Vec<[[u32; 3]; 3]> = cdt
+            .inner_faces()
+            .map(|face| {
+                let edges =
+                    face.adjacent_edges().map(|e| [e.from().index() as u32, e.index() as u32, e.rev().index() as u32]);
+                [0, 1, 2].map(|i| edges.map(|e| e[i]))
+            })
+            .collect();
+        // They are numbered in the order of their lowest vertices.
+        let lowest = |vertices: &[u32; 3]| *vertices.iter().min().expect("a triangle has vertices") as usize;
+        let mut next = vec![0; n + 1];
+        for [vertices, ..] in &faces {
+            next[lowest(vertices) + 1] += 4;
+        }
+        for v in 0..n {
+            next[v + 1] += next[v];
+        }
         // The number here of each of the library's edges that has a triangle on its left.
         let mut numbers = vec![CLOSED; cdt.num_directed_edges()];
-        for face in cdt.inner_faces() {
-            for edge in face.adjacent_edges() {
-                numbers[edge.fix().index()] = edges.len() as u32;
-                edges.push(HalfEdge { origin: edge.from().fix().index() as u32, twin: CLOSED });
+        self.triangles = vec![Triangle([HalfEdge { origin: 0, twin: CLOSED }; 4]); faces.len()];
+        self.first_fan = vec![0; n + 1];
+        for [vertices, inner, outer] in &faces {
+            let first = &mut next[lowest(vertices)];
+            for i in 0..3 {
+                // Replaced below by the number of the same edge.
+                self.triangles[*first as usize / 4].0[i] = HalfEdge { origin: vertices[i], twin: outer[i] };
+                self.first_fan[vertices[i] as usize + 1] += 1;
+                numbers[inner[i] as usize] = *first + i as u32;
+            }
+            *first += 4;
+        }
+        for Triangle(triangle) in &mut self.triangles {
+            for edge in &mut triangle[..3] {
+                edge.twin = numbers[edge.twin as usize];
             }
         }
-        for edge in cdt.directed_edges() {
-            if let Some(half) = edges.get_mut(numbers[edge.fix().index()] as usize) {
-                half.twin = numbers[edge.rev().fix().index()];
+        for v in 0..n {
+            self.first_fan[v + 1] += self.first_fan[v];
+        }
+        self.fans = vec![0; self.first_fan[n] as usize];
+        let mut next = self.first_fan.clone();
+        for (Triangle(triangle), first) in self.triangles.iter().zip((0..).step_by(4)) {
+            for (edge, number) in triangle[..3].iter().zip(first..) {
+                let slot = &mut next[edge.origin as usize];
+                self.fans[*slot as usize] = number;
+                *slot += 1;
             }
         }
-        let mut first_fan = vec![0; vertices.len() + 1];
-        for edge in &edges {
-            first_fan[edge.origin as usize + 1] += 1;
-        }
-        for v in 0..vertices.len() {
-            first_fan[v + 1] += first_fan[v];
-        }
-        let mut fans = vec![0; edges.len()];
-        let mut next = first_fan.clone();
-        for (number, edge) in (0..).zip(&edges) {
-            let slot = &mut next[edge.origin as usize];
-            fans[*slot as usize] = number;
-            *slot += 1;
-        }
-        Mesh { vertices, real, anchor, edges, fans, first_fan }
     }
 
-    /// Closes the edges that lie on walls. Only those that are found by following a wall from vertex to vertex are closed,
+    /// Closes the edges that lie on the first `walls` walls. Only those that are found by following a wall from vertex to vertex are closed,
     /// so whatever else the triangulation holds as constraints hides nothing.
-    fn close(&mut self, cdt: &Cdt, walls: &[[u32; 2]]) {
-        for &[u, v] in walls {
+    fn close(&mut self, cdt: &Cdt, walls: usize) {
+        for wall in 0..walls {
+            let [u, v] = self.walls[wall];
             let (mut here, end) = (u, self.at(v));
             while here != v {
                 let at = self.at(here);
@@ -120,8 +186,8 @@ impl Mesh {
         for (from, to) in [(u, v), (v, u)] {
             let fan = self.first_fan[from as usize] as usize..self.first_fan[from as usize + 1] as usize;
             for &edge in &self.fans[fan] {
-                if self.edges[next(edge) as usize].origin == to {
-                    self.edges[edge as usize].twin = CLOSED;
+                if self.edge(next(edge)).origin == to {
+                    self.triangles[edge as usize / 4].0[edge as usize % 4].twin = CLOSED;
                 }
             }
         }
@@ -131,20 +197,38 @@ impl Mesh {
         self.vertices[vertex as usize]
     }
 
-    /// The mesh's number for a pivot: a vertex of the model, or their number for the anchor.
-    pub(super) fn pivot(&self, pivot: u32) -> u32 {
-        assert!(pivot <= self.real, "a pivot is a vertex or the anchor");
-        if pivot == self.real { self.anchor } else { pivot }
+    /// The vertex of a pivot: a vertex of the model, or their number for the anchor; `None` if it is
+    /// not in the mesh.
+    pub(super) fn pivot(&self, pivot: u32) -> Option<u32> {
+        Some(self.pivots[pivot as usize]).filter(|&v| v != ABSENT)
     }
 
-    /// How many of the vertices, the first, are the model's.
-    pub(super) fn real(&self) -> u32 {
-        self.real
+    /// The walls in the mesh.
+    pub(super) fn walls(&self) -> &[[u32; 2]] {
+        &self.walls
+    }
+
+    /// The model's number of a vertex, or [`ABSENT`].
+    #[inline]
+    pub(super) fn name(&self, vertex: u32) -> u32 {
+        self.names[vertex as usize]
+    }
+
+    /// How many vertices it has.
+    pub(super) fn len(&self) -> usize {
+        self.vertices.len()
     }
 
     #[inline]
     pub(super) fn edge(&self, edge: u32) -> HalfEdge {
-        self.edges[edge as usize]
+        self.triangles[edge as usize / 4].0[edge as usize % 4]
+    }
+
+    /// The next and the last half-edge of the triangle of `edge`.
+    #[inline]
+    pub(super) fn beyond(&self, edge: u32) -> [HalfEdge; 2] {
+        let Triangle(edges) = &self.triangles[edge as usize / 4];
+        [edges[next(edge) as usize % 4], edges[next(next(edge)) as usize % 4]]
     }
 
     /// The half-edges that start at `vertex`, one in each triangle round it.
@@ -156,7 +240,29 @@ impl Mesh {
 /// The next half-edge of the same triangle.
 #[inline]
 pub(super) fn next(edge: u32) -> u32 {
-    if edge % 3 == 2 { edge - 2 } else { edge + 1 }
+    if edge % 4 == 2 { edge - 2 } else { edge + 1 }
+}
+
+/// The numbers of `points` in the order in which Morton's curve through the box of `bounds` passes them (Morton, "A computer
+/// oriented geodetic data base", 1966).
+fn along_curve(points: &[DVec2], (low, high): (DVec2, DVec2)) -> Vec<u32> {
+    let scale = f64::from(u16::MAX) / (high - low).max_element();
+    let key = |p: &DVec2| {
+        // What lies outside, or in a box of no size, becomes 0 or the largest number.
+        let [x, y] = ((p - low) * scale).to_array().map(|c| spread(c as u16));
+        x | y << 1
+    };
+    let mut keyed: Vec<u64> =
+        points.iter().zip(0..).map(|(p, v): (_, u32)| u64::from(key(p)) << 32 | u64::from(v)).collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|keyed| keyed as u32).collect()
+}
+
+/// A zero between any two bits.
+fn spread(bits: u16) -> u32 {
+    [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)]
+        .into_iter()
+        .fold(u32::from(bits), |bits, (by, mask)| (bits | bits << by) & mask)
 }
 
 fn handle(vertex: u32) -> spade::handles::FixedVertexHandle {
@@ -164,8 +270,7 @@ fn handle(vertex: u32) -> spade::handles::FixedVertexHandle {
 }
 
 /// The corners of a square far outside, so that every vertex has triangles all round it.
-fn corners(model: &Model) -> [DVec2; 4] {
-    let (low, high) = model.bounds();
+fn corners((low, high): (DVec2, DVec2)) -> [DVec2; 4] {
     let centre = low / 2.0 + high / 2.0;
     let mut half = (high - low).max_element();
     if half == 0.0 {

@@ -10,7 +10,7 @@ mod mesh;
 
 use glam::DVec2;
 
-use self::mesh::Mesh;
+use self::mesh::{ABSENT, Mesh};
 use crate::geometry::{opposite, orient};
 use crate::scene::Model;
 
@@ -19,7 +19,7 @@ pub use self::expand::Scratch;
 /// A constrained triangulation of a model's walls, from which to look.
 pub struct Visibility {
     mesh: Mesh,
-    /// The far ends of the walls that meet at each vertex, and where each vertex's begin.
+    /// The far ends of the walls that meet at each vertex of the mesh, and where each vertex's begin.
     ends: Vec<u32>,
     first_end: Vec<u32>,
 }
@@ -28,10 +28,19 @@ impl Visibility {
     /// Triangulates the model; `None` where the triangulation cannot take its coordinates (they span more than 140
     /// binary orders of magnitude). O(n log n) for walls that do not cross.
     pub fn new(model: &Model) -> Option<Self> {
-        let mesh = Mesh::new(model)?;
-        let n = model.vertices().len();
+        Self::within(model, model.bounds())
+    }
+
+    /// Triangulates only the walls near the box between `reach`'s lowest and highest x and y, for looks inside it: what they
+    /// see there is all that there is to be seen there, since no line of sight leaves the box between. `reach` holds the
+    /// anchor.
+    ///
+    /// A taut rope never leaves the smallest box around its trace and the anchor.
+    pub fn within(model: &Model, reach: (DVec2, DVec2)) -> Option<Self> {
+        let mesh = Mesh::new(model, reach)?;
+        let n = mesh.len();
         let mut first_end = vec![0; n + 1];
-        for &v in model.scene().walls().iter().flatten() {
+        for &v in mesh.walls().iter().flatten() {
             first_end[v as usize + 1] += 1;
         }
         for v in 0..n {
@@ -39,7 +48,7 @@ impl Visibility {
         }
         let mut ends = vec![0; first_end[n] as usize];
         let mut next = first_end.clone();
-        for &[u, v] in model.scene().walls() {
+        for &[u, v] in mesh.walls() {
             for (here, there) in [(u, v), (v, u)] {
                 ends[next[here as usize] as usize] = there;
                 next[here as usize] += 1;
@@ -53,7 +62,7 @@ impl Visibility {
     ///
     /// A vertex exactly behind another on one line may be left out: the nearer one is met first, and then sees it.
     /// O(triangles seen through), by triangular expansion (Bungiu et al., "Efficient computation of visibility
-    /// polygons", EuroCG 2014).
+    /// polygons", EuroCG 2014). Nothing if the pivot lies out of reach.
     ///
     /// # Panics
     ///
@@ -63,7 +72,8 @@ impl Visibility {
     }
 
     /// Writes those of them that lie inside all lines of some kind into `seen`, each once, and returns how many triangles
-    /// were looked at; `None`, and something in `seen` or nothing, if it gave up because they were more than `most`.
+    /// were looked at; `None`, and something in `seen` or nothing, if it gave up because they were more than `most`, or the
+    /// pivot lies out of reach.
     ///
     /// `outside` has a bit for each line outside which a point lies; `pivot` must lie inside all. Looks no further than
     /// that: for pivots that are not worth a list. O(triangles of the mesh inside).
@@ -81,16 +91,22 @@ impl Visibility {
         seen: &mut Vec<u32>,
     ) -> Option<usize> {
         seen.clear();
-        let o = self.mesh.pivot(pivot);
+        let o = self.mesh.pivot(pivot)?;
         let triangles = self.mesh.expand(o, scratch, seen, outside, most)?;
         let at = self.mesh.at(o);
-        seen.retain(|&v| self.is_tangent(at, v));
+        seen.retain_mut(|v| {
+            let name = self.mesh.name(*v);
+            name != ABSENT && self.is_tangent(at, std::mem::replace(v, name))
+        });
         Some(triangles)
     }
 
     /// Whether the walls that meet at `v` leave one side of the line from `o` to it free.
     fn is_tangent(&self, o: DVec2, v: u32) -> bool {
         let (first, last) = (self.first_end[v as usize] as usize, self.first_end[v as usize + 1] as usize);
+        if last - first == 1 {
+            return true;
+        }
         let p = self.mesh.at(v);
         let mut side = 0.0;
         for &end in &self.ends[first..last] {

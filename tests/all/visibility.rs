@@ -44,6 +44,14 @@ fn check(kind: Kind, model: &Model) -> Result<usize, TestCaseError> {
         return Ok(0);
     };
     let exact = kind == Kind::Lattice || !has_crossings(model);
+    // The same from inside a box, as far as it reaches.
+    let n = model.vertices().len();
+    let reach = model.vertices()[n / 3..]
+        .iter()
+        .take(n / 3 + 1)
+        .fold((model.anchor(), model.anchor()), |(l, h), &p| (l.min(p), h.max(p)));
+    let is_near = |p: DVec2| p.cmpge(reach.0).all() && p.cmple(reach.1).all();
+    let near = Visibility::within(model, reach).expect("a part can be triangulated where the whole can");
     let (mut scratch, mut seen, mut total) = (Scratch::default(), vec![], 0);
     for pivot in 0..=model.vertices().len() as u32 {
         visibility.look(pivot, &mut scratch, &mut seen);
@@ -53,6 +61,26 @@ fn check(kind: Kind, model: &Model) -> Result<usize, TestCaseError> {
         once.dedup();
         prop_assert_eq!(once.len(), seen.len(), "a vertex is listed twice");
         let o = model.vertices().get(pivot as usize).copied().unwrap_or(model.anchor());
+        if is_near(o) {
+            let mut nearby = vec![];
+            near.look(pivot, &mut scratch, &mut nearby);
+            nearby.retain(|&v| is_near(model.vertices()[v as usize]));
+            nearby.sort_unstable();
+            let expected: Vec<u32> = once.iter().copied().filter(|&v| is_near(model.vertices()[v as usize])).collect();
+            if exact {
+                prop_assert_eq!(nearby, expected, "a look from {} within {:?}", o, reach);
+            } else {
+                // Which of the walls that cross stay open may differ; what is surely to be seen is checked below.
+                for (v, &p) in (0..).zip(model.vertices()) {
+                    let is_next = !is_blocked(model, o, p) && is_tangent(model, o, v) && p != o;
+                    let behind = model.vertices().iter().any(|&q| orient(o, p, q) == 0.0 && between(o, p, q));
+                    prop_assert!(
+                        !is_next || behind || !is_near(p) || nearby.contains(&v),
+                        "{p} is missing within {reach:?}"
+                    );
+                }
+            }
+        }
         // Bounded by lines through walls that do not go through the pivot, a look sees the same, as far as they let it.
         let lines: Vec<[DVec2; 2]> = (0..model.scene().walls().len())
             .map(|wall| model.scene().ends(wall))

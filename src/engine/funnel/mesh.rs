@@ -1,15 +1,14 @@
 //! A triangulation of the vertices, wide enough that no trace leaves it.
 
 use glam::DVec2;
-use rayon::prelude::*;
 use spade::handles::{DirectedEdgeHandle, FaceHandle, InnerTag};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use super::triangle::{Door, NEXT, Triangle};
 use crate::engine::EngineError;
-use crate::geometry::{TracePoint, left_of};
+use crate::geometry::{TracePoint, higher, left_of, lower};
 use crate::scene::Model;
-use crate::trace::SettledTrace;
+use crate::trace::{self, SettledTrace};
 
 /// A box: its lowest and highest x and y.
 type Bounds = (DVec2, DVec2);
@@ -82,10 +81,8 @@ impl Mesh {
 
 /// The bounds of the model and all traces.
 pub(super) fn bounds(model: &Model, traces: &[SettledTrace]) -> Bounds {
-    let join = |(l, h): Bounds, (low, high): Bounds| (l.min(low), h.max(high));
-    let all = model.bounds();
-    let of = |trace: &SettledTrace| trace.points().iter().fold(all, |b, &p| join(b, (p, p)));
-    traces.par_iter().map(of).reduce(|| all, join)
+    let (low, high) = model.bounds();
+    trace::bounds(traces).map_or((low, high), |(l, h)| (lower(l, low), higher(h, high)))
 }
 
 /// A frame so far outside of `bounds` that most other traces in the scene fit into it as well.
