@@ -7,7 +7,7 @@
 //!
 //! Data flows one way: a [`scene`] and its anchor make a [`Model`](scene::Model); a [`trace`] is checked against the model
 //! and settled; an [`engine`] turns settled traces into [`TraceRecord`](rope::TraceRecord)s; [`output`] writes them. [`report`]
-//! measures engines against each other.
+//! measures engines against each other; a [`study`] draws very many traces and says what their ropes are like.
 //!
 //! ```
 //! use tautline::engine::{Engine, Job, Reference};
@@ -38,6 +38,7 @@ mod read_error;
 pub mod report;
 pub mod rope;
 pub mod scene;
+pub mod study;
 pub mod trace;
 pub mod visibility;
 

@@ -1,0 +1,259 @@
+//! What a study is: the file that describes it.
+
+use std::path::{Path, PathBuf};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A study, as its file describes it. All lengths are in the scene's unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Plan {
+    /// Where the walls are and the rope is tied.
+    pub scene: ScenePlan,
+    /// How the free end is dragged.
+    pub walk: WalkPlan,
+    /// How much is done.
+    #[serde(default)]
+    pub run: RunPlan,
+    /// What is counted.
+    #[serde(default)]
+    pub tallies: TallyPlan,
+    /// When to stop before all traces are done.
+    #[serde(default)]
+    pub until: UntilPlan,
+    /// What is written besides the summary.
+    #[serde(default)]
+    pub outputs: OutputPlan,
+}
+
+/// Where the walls are and the rope is tied.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScenePlan {
+    /// A built-in scene: `rooms`, `random-M` or `lattice-M` with M walls.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub built_in: Option<String>,
+    /// A scene file, relative to the study's own folder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<PathBuf>,
+    /// Where the rope is tied, instead of where the scene says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub anchor: Option<AnchorPlan>,
+}
+
+/// Where the rope is tied.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum AnchorPlan {
+    /// At one point, x and y.
+    One([f64; 2]),
+    /// At several points, the traces taking turns.
+    Several(Vec<[f64; 2]>),
+    /// At points drawn over the free space in which the scene's own anchor lies, the traces taking turns.
+    Sampled(Sampled),
+}
+
+/// Points drawn by the study's seed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sampled {
+    /// How many, from 1 to 1024.
+    pub sample: u32,
+}
+
+/// How the free end is dragged. No step ever touches a wall.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum WalkPlan {
+    /// A random walk whose steps all have the same length and any direction.
+    Uniform {
+        /// The length of a step.
+        step: f64,
+        /// How many steps a trace has.
+        steps: u32,
+        /// Where traces start.
+        #[serde(default)]
+        start: Start,
+        /// What becomes of a step that meets a wall.
+        #[serde(default)]
+        at_walls: AtWalls,
+    },
+    /// A random walk whose steps are normally distributed in x and y.
+    Gaussian {
+        /// The standard deviation of a step in x and in y.
+        step: f64,
+        /// How many steps a trace has.
+        steps: u32,
+        /// Where traces start.
+        #[serde(default)]
+        start: Start,
+        /// What becomes of a step that meets a wall.
+        #[serde(default)]
+        at_walls: AtWalls,
+    },
+    /// A walk that keeps its heading but for noise: the heading turns by a uniform angle in each step.
+    Persistent {
+        /// The length of a step.
+        step: f64,
+        /// How many steps a trace has.
+        steps: u32,
+        /// By how much the heading turns at most in one step, in radians.
+        #[serde(default = "default_turn")]
+        turn: f64,
+        /// Where traces start.
+        #[serde(default)]
+        start: Start,
+        /// What becomes of a step that meets a wall.
+        #[serde(default)]
+        at_walls: AtWalls,
+    },
+    /// Drives along shortest collision-free paths from one random goal to the next.
+    Waypoints {
+        /// The length of a step along the path.
+        step: f64,
+        /// How many steps a trace has.
+        steps: u32,
+        /// Where traces start.
+        #[serde(default)]
+        start: Start,
+    },
+    /// The traces of a file, in the order of their numbers.
+    Given {
+        /// A .csv or .parquet of points, relative to the study's own folder.
+        file: PathBuf,
+    },
+}
+
+fn default_turn() -> f64 {
+    0.4
+}
+
+/// Where a trace starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Start {
+    /// At the anchor.
+    #[default]
+    Anchor,
+    /// At a point drawn uniformly over what is visible from the anchor within the scene's bounding box.
+    Visible,
+}
+
+/// What becomes of a step that meets a wall or leaves the scene's bounding box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AtWalls {
+    /// It is drawn again.
+    #[default]
+    Redraw,
+    /// The free end stays where it is for that step.
+    Reject,
+    /// It is thrown back by the wall as light by a mirror.
+    Reflect,
+}
+
+/// How much is done.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RunPlan {
+    /// How many traces.
+    pub traces: u64,
+    /// How many traces a block has: what is computed, saved and handed out as one.
+    pub block: u32,
+    /// What all random numbers are made from.
+    pub seed: u64,
+}
+
+impl Default for RunPlan {
+    fn default() -> Self {
+        RunPlan { traces: 10_000, block: 1000, seed: 1 }
+    }
+}
+
+/// What is counted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TallyPlan {
+    /// How often intervals are to hold the truth, between 0 and 1.
+    pub confidence: f64,
+    /// Rope lengths: for each, when the rope first becomes longer (the survival curve).
+    pub limits: Vec<f64>,
+    /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's size.
+    pub bin: f64,
+    /// How many columns the map of the plane has; its cells are squares. 0 for no map.
+    pub map: u32,
+    /// After how many steps the map looks at the free end again: neighbouring steps say nearly the same.
+    pub map_every: u32,
+    /// How many of the most common taut ropes are reported.
+    pub ropes: u32,
+}
+
+impl Default for TallyPlan {
+    fn default() -> Self {
+        TallyPlan { confidence: 0.95, limits: Vec::new(), bin: 0.0, map: 64, map_every: 8, ropes: 10 }
+    }
+}
+
+/// When to stop before all traces are done. Looked at after each block, in the order of the blocks.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct UntilPlan {
+    /// Stop when half the interval of the mean of the longest rope length is less than this share of that mean.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_error: Option<f64>,
+    /// Stop after that many seconds; what is done by then depends on the machine, not what it says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
+}
+
+/// What is written besides the summary.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct OutputPlan {
+    /// One row for each trace, `traces.parquet`.
+    pub traces: bool,
+    /// Pictures and `report.html`.
+    pub pictures: bool,
+}
+
+impl Default for OutputPlan {
+    fn default() -> Self {
+        OutputPlan { traces: false, pictures: true }
+    }
+}
+
+impl WalkPlan {
+    /// How many steps each trace has; `None` for given traces.
+    pub fn steps(&self) -> Option<u32> {
+        match *self {
+            WalkPlan::Uniform { steps, .. }
+            | WalkPlan::Gaussian { steps, .. }
+            | WalkPlan::Persistent { steps, .. }
+            | WalkPlan::Waypoints { steps, .. } => Some(steps),
+            WalkPlan::Given { .. } => None,
+        }
+    }
+}
+
+/// What is wrong with a study's file.
+#[derive(Debug, thiserror::Error)]
+#[error("{}{what}", .path.as_ref().map_or(String::new(), |p| format!("{}: ", p.display())))]
+pub struct PlanError {
+    /// The file, if it is one.
+    pub path: Option<PathBuf>,
+    /// What is wrong, where, and what would be right.
+    pub what: String,
+}
+
+impl PlanError {
+    #[expect(dead_code, reason = "the readers of studies come next")]
+    pub(super) fn new(what: impl Into<String>) -> Self {
+        PlanError { path: None, what: what.into() }
+    }
+
+    pub(super) fn at(mut self, path: &Path) -> Self {
+        self.path = Some(path.to_owned());
+        self
+    }
+}

@@ -1,0 +1,210 @@
+//! A study's answer: what `summary.json` holds. The same study gives the same bytes, wherever and in however many parts it
+//! was computed.
+
+use serde::{Deserialize, Serialize};
+
+use super::plan::Plan;
+
+/// The answer. Lengths are in the scene's unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// The study, with everything that its file left out.
+    pub study: Plan,
+    /// A hash of all that the answer depends on: the study, the scene and the traces given.
+    pub identity: String,
+    /// How many traces the answer is made of.
+    pub traces: u64,
+    /// How many steps they have together.
+    pub steps: u64,
+    /// How many wraps and unwraps there were.
+    pub events: u64,
+    /// How many blocks are in it.
+    pub blocks: u64,
+    /// Why no more blocks are.
+    pub stopped: Stopped,
+    /// One number a trace: its distribution over the traces.
+    pub scalars: Vec<Scalar>,
+    /// Histograms of the final length and of the greatest.
+    pub histograms: Vec<Histogram>,
+    /// For each limit, when the rope became longer.
+    pub survival: Vec<Survival>,
+    /// The obstacles that ropes were wound about at the end, the most often first.
+    pub obstacles: Vec<Obstacle>,
+    /// The most common taut ropes at the end, the most common first.
+    pub ropes: Vec<CommonRope>,
+    /// The wall ends that ropes touched, the longest touched first, at most a thousand.
+    pub contacts: Vec<Contact>,
+    /// The plane.
+    pub map: Option<Map>,
+}
+
+/// Why a study ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stopped {
+    /// All traces are done.
+    Complete,
+    /// The mean is as certain as was asked for.
+    RelativeError,
+    /// The time was over.
+    Seconds,
+    /// It has not ended: it was interrupted, or is one part of several.
+    Unfinished,
+}
+
+/// A number with its uncertainty: the true value lies between `low` and `high` as often as the study's confidence says.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// The best guess.
+    pub value: f64,
+    /// Its standard error; `None` where too little was seen to say.
+    pub error: Option<f64>,
+    /// The lower end of the interval; `None` where too little was seen to say.
+    pub low: Option<f64>,
+    /// The upper end.
+    pub high: Option<f64>,
+}
+
+/// The distribution of one number a trace.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Scalar {
+    /// `length`, `max_length`, `depth`, `max_depth`, `wraps` or `unwraps`.
+    pub name: String,
+    /// The mean over the traces.
+    pub mean: Estimate,
+    /// The standard deviation over the traces.
+    pub deviation: Option<f64>,
+    /// The least.
+    pub min: f64,
+    /// The greatest.
+    pub max: f64,
+    /// Quantiles; each is within one part in a hundred of a value of that rank.
+    pub quantiles: Vec<Quantile>,
+}
+
+/// A quantile.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Quantile {
+    /// Which share of the traces lies below.
+    pub share: f64,
+    /// The quantile. It has no standard error of its own.
+    pub value: Estimate,
+}
+
+/// How many traces have which value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Histogram {
+    /// `length` or `max_length`.
+    pub name: String,
+    /// Bin i is from i times this up to i + 1 times this.
+    pub width: f64,
+    /// The bins that are not empty, in order.
+    pub bins: Vec<Bin>,
+}
+
+/// A bin.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Bin {
+    /// Its number.
+    pub bin: u64,
+    /// How many traces are in it.
+    pub count: u64,
+    /// Which share of all traces that is.
+    pub share: Estimate,
+}
+
+/// Which share of the ropes was never longer than a limit, step by step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Survival {
+    /// The limit.
+    pub limit: f64,
+    /// At how many steps the curve is given, and what it is there: the share of traces whose rope was never longer than
+    /// the limit up to that step.
+    pub curve: Vec<SurvivalPoint>,
+}
+
+/// A point of a survival curve.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SurvivalPoint {
+    /// The step.
+    pub step: u64,
+    /// The share.
+    pub share: Estimate,
+}
+
+/// Walls that hang together.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Obstacle {
+    /// Its number: the lowest of its wall ends' numbers.
+    pub vertex: u32,
+    /// Where that wall end is.
+    pub at: [f64; 2],
+    /// How many walls it has.
+    pub walls: u32,
+    /// The share of ropes that go about it at least once at the end, all the way round.
+    pub wound: Estimate,
+    /// The share that does so counter-clockwise.
+    pub left: Estimate,
+    /// The share that does so clockwise.
+    pub right: Estimate,
+    /// The mean number of times round, counter-clockwise counting as positive, over all ropes.
+    pub mean: Estimate,
+}
+
+/// A taut rope and how common it is. Ropes that turn at the same wall ends on the same sides in the same order are one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CommonRope {
+    /// How many traces ended with it, at the least.
+    pub count: u64,
+    /// How many at the most: ropes that are rare in a block are not all counted.
+    pub at_most: u64,
+    /// The share of all traces that `count` is.
+    pub share: Estimate,
+    /// Which of the anchors it is tied to.
+    pub anchor: [f64; 2],
+    /// Where it turns, from the anchor.
+    pub wraps: Vec<[f64; 2]>,
+    /// On which side the wall ends lie there: `left` or `right`.
+    pub sides: Vec<String>,
+}
+
+/// How often ropes touched a wall end.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Contact {
+    /// Its number in the scene.
+    pub vertex: u32,
+    /// Where it is.
+    pub at: [f64; 2],
+    /// The number of wraps about it per trace.
+    pub wraps: Estimate,
+    /// The share of all steps after which the rope touches it. (A rope that touches it twice counts twice.)
+    pub share: Estimate,
+}
+
+/// The plane, cell by cell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Map {
+    /// The lowest x and y of the cells.
+    pub low: [f64; 2],
+    /// How wide and high a cell is.
+    pub cell: f64,
+    /// How many there are side by side.
+    pub columns: u32,
+    /// How many one above the other.
+    pub rows: u32,
+    /// The cells in which a free end was seen, or a rope touched a wall end, in the order of their numbers.
+    pub cells: Vec<Cell>,
+}
+
+/// A cell of the map.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// Its number: column + columns * row, both counted from the lowest x and y.
+    pub cell: u64,
+    /// How often a free end was seen in it.
+    pub visits: u64,
+    /// The mean length of the rope then.
+    pub length: Option<Estimate>,
+    /// The number of contacts with wall ends in the cell, a step, on average.
+    pub contacts: Estimate,
+}
