@@ -8,6 +8,7 @@ use tautline::engine::EngineError;
 use tautline::gpu::GpuError;
 use tautline::output::WriteError;
 use tautline::scene::AnchorError;
+use tautline::study::{PlanError, StateError};
 
 /// A failed command.
 #[derive(Debug)]
@@ -32,6 +33,16 @@ impl Failure {
         Failure { code: 130, error: anyhow::anyhow!("stopped; nothing was written") }
     }
 
+    /// Stopped early, with a checkpoint from which to go on.
+    pub(crate) fn checkpoint(error: anyhow::Error) -> Self {
+        Failure { code: 4, error }
+    }
+
+    /// Done, but not as was asked for.
+    pub(crate) fn unmet(error: anyhow::Error) -> Self {
+        Failure { code: 5, error }
+    }
+
     pub(crate) fn code(&self) -> ExitCode {
         ExitCode::from(self.code)
     }
@@ -45,6 +56,18 @@ impl fmt::Display for Failure {
 
 impl From<ReadError> for Failure {
     fn from(error: ReadError) -> Self {
+        Failure::input(error.into())
+    }
+}
+
+impl From<PlanError> for Failure {
+    fn from(error: PlanError) -> Self {
+        Failure::input(error.into())
+    }
+}
+
+impl From<StateError> for Failure {
+    fn from(error: StateError) -> Self {
         Failure::input(error.into())
     }
 }

@@ -13,6 +13,7 @@ mod interrupt;
 mod output;
 mod progress;
 mod spread;
+mod study;
 mod summary;
 mod violations;
 
@@ -30,7 +31,7 @@ use failure::Failure;
     version,
     max_term_width = 110,
     after_help = "Exit codes: 0 done; 1 internal error; 2 bad input or usage; \
-    3 no such or lost GPU; 130 stopped by Ctrl-C."
+    3 no such or lost GPU; 4 stopped early with a checkpoint; 5 finished with a target not met; 130 stopped by Ctrl-C."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -41,6 +42,8 @@ struct Cli {
 enum Command {
     /// Evaluate the ropes of given traces in a scene; without any, those of the built-in example
     Eval(eval::Args),
+    /// Monte-Carlo studies: very many random traces, and what their ropes are like on the whole
+    Study(study::Args),
     /// Check a scene, and traces in it, without evaluating ropes
     Check(check::Args),
     /// Measure the throughput of all engines, side by side on the same walks
@@ -56,6 +59,7 @@ pub(crate) fn run() -> ExitCode {
     // A panic is a bug of this program; its message is printed by then.
     let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
         Command::Eval(args) => eval::run(&args),
+        Command::Study(args) => study::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Adapters(args) => adapters::run(&args),

@@ -81,11 +81,25 @@ impl WholeFile {
     ///
     /// What the operating system says about the last bytes or the new name; or that an earlier write failed.
     pub fn finish(self) -> Result<(), WriteError> {
+        self.take_place(|_| Ok(()))
+    }
+
+    /// Puts the file in its place once its bytes are on the disk, so that not even a failing machine leaves half of it there.
+    ///
+    /// # Errors
+    ///
+    /// As [`finish`](Self::finish).
+    pub fn finish_durably(self) -> Result<(), WriteError> {
+        self.take_place(|file| file.sync_all())
+    }
+
+    fn take_place(self, then: impl FnOnce(&File) -> io::Result<()>) -> Result<(), WriteError> {
         let WholeFile { out, temporary, path, target, failed } = self;
         if failed {
             return Err(WriteError::target(&path, "an earlier write failed"));
         }
         let file = out.into_inner().map_err(|e| WriteError::io(&path, e.into_error()))?;
+        then(&file).map_err(|cause| WriteError::io(&path, cause))?;
         // Some systems do not rename open files.
         drop(file);
         temporary.persist(&target).map_err(|e| WriteError::io(&path, e.error))

@@ -181,7 +181,7 @@ pub struct TallyPlan {
     pub limits: Vec<f64>,
     /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's size.
     pub bin: f64,
-    /// How many columns the map of the plane has; its cells are squares. 0 for no map.
+    /// How many cells the longer side of the map of the plane has; they are squares. 0 for no map.
     pub map: u32,
     /// After how many steps the map looks at the free end again: neighbouring steps say nearly the same.
     pub map_every: u32,
@@ -247,7 +247,6 @@ pub struct PlanError {
 }
 
 impl PlanError {
-    #[expect(dead_code, reason = "the readers of studies come next")]
     pub(super) fn new(what: impl Into<String>) -> Self {
         PlanError { path: None, what: what.into() }
     }

@@ -1,0 +1,43 @@
+//! `tautline study merge`.
+
+use std::path::PathBuf;
+
+use anyhow::anyhow;
+use serde_json::json;
+use tautline::study::{StateError, merge};
+
+use super::folder::Folder;
+use super::run::conclude;
+use crate::cli::failure::Failure;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// The shards' folders, all of them
+    #[arg(required = true, value_name = "DIR")]
+    folders: Vec<PathBuf>,
+    /// The folder for what comes out; must not hold a study yet
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Print the summary as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let mut opened = args.folders.iter().map(|path| Folder::open(path)).collect::<Result<Vec<_>, _>>()?;
+    let shards = opened.iter().map(|(folder, _, state)| (folder.path().to_owned(), state.clone())).collect();
+    let (_, study, _) = &opened[0];
+    if let Some((folder, ..)) = opened.iter().find(|(_, other, _)| other.identity() != study.identity()) {
+        let what = format!("another study than {}'s", args.folders[0].display());
+        return Err(StateError { path: folder.path().to_owned(), what }.into());
+    }
+    let state = merge(study, shards)?;
+    let base = opened[0].0.base()?;
+    let folder = Folder::create(&args.out)?;
+    let (_, study, _) = opened.remove(0);
+    folder.remember(study.plan(), &base)?;
+    folder.save(&state).map_err(|e| Failure::internal(anyhow!(e)))?;
+    let run =
+        json!({ "version": env!("CARGO_PKG_VERSION"), "merged": args.folders, "seconds_of_all_runs": state.seconds() });
+    conclude(&folder, &study, &state, &run, args.json)
+}

@@ -1,0 +1,67 @@
+//! `tautline study`.
+
+mod folder;
+mod merge;
+mod replay;
+mod run;
+mod show;
+
+use std::path::PathBuf;
+
+use clap::Subcommand;
+use tautline::study::{EXAMPLE, Plan};
+
+use super::failure::Failure;
+use super::{print, print_json};
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a study, or the built-in example
+    Run(run::RunArgs),
+    /// Go on with a study that was stopped
+    Resume(run::ResumeArgs),
+    /// Put the shards of a study together
+    Merge(merge::Args),
+    /// Show what a study says so far
+    Show(show::Args),
+    /// Evaluate one of a study's traces again
+    Replay(replay::Args),
+    /// Write a study's file to start from, with comments
+    Init(InitArgs),
+    /// Print the JSON Schema of studies' files
+    Schema,
+}
+
+#[derive(Debug, clap::Args)]
+struct InitArgs {
+    /// The file to write; must not be there yet
+    #[arg(default_value = "study.toml")]
+    file: PathBuf,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    match &args.command {
+        Command::Run(args) => run::run(args),
+        Command::Resume(args) => run::resume(args),
+        Command::Merge(args) => merge::run(args),
+        Command::Show(args) => show::run(args),
+        Command::Replay(args) => replay::run(args),
+        Command::Init(args) => init(args),
+        Command::Schema => print_json(&Plan::schema()),
+    }
+}
+
+fn init(args: &InitArgs) -> Result<(), Failure> {
+    let name = args.file.display();
+    let mut file = std::fs::File::create_new(&args.file)
+        .map_err(|e| Failure::input(anyhow::anyhow!("cannot write {name}: {e}")))?;
+    std::io::Write::write_all(&mut file, EXAMPLE.as_bytes())
+        .map_err(|e| Failure::internal(anyhow::anyhow!("cannot write {name}: {e}")))?;
+    print(&format!("wrote {name}; run it with: tautline study run {name}\n"))
+}

@@ -1,0 +1,50 @@
+//! `tautline study replay`.
+
+use std::path::PathBuf;
+
+use anyhow::anyhow;
+use tautline::engine::{Engine, Job, Reference};
+use tautline::output::write_events;
+
+use super::folder::Folder;
+use crate::cli::failure::Failure;
+use crate::cli::print;
+use crate::cli::summary::short;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// The study's folder
+    folder: PathBuf,
+    /// The trace's number
+    #[arg(long, value_name = "I")]
+    trace: u64,
+    /// Where to write its wraps and unwraps: .jsonl, .csv or .parquet
+    #[arg(long, value_name = "FILE")]
+    events: Option<PathBuf>,
+}
+
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let (_, study, _) = Folder::open(&args.folder)?;
+    let plan = study.plan();
+    if args.trace >= plan.run.traces {
+        let last = plan.run.traces - 1;
+        return Err(Failure::input(anyhow!(
+            "--trace: the study's traces are 0 to {last}, so there is no {}",
+            args.trace
+        )));
+    }
+    let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
+    let record = Reference::new(model).evaluate(&[trace], &Job::new())?.remove(0);
+    if let Some(path) = &args.events {
+        write_events(path, model.vertices(), std::slice::from_ref(&record))?;
+    }
+    print(&format!(
+        "trace {}: {} steps, {} events, length {} at the end, {} at the most, {} contacts\n",
+        args.trace,
+        record.steps,
+        record.events.len(),
+        short(record.length),
+        short(record.max_length),
+        record.depth
+    ))
+}

@@ -1,0 +1,233 @@
+//! `tautline study run` and `tautline study resume`.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use anyhow::anyhow;
+use serde_json::json;
+use tautline::engine::{Engine, EngineError, Job};
+use tautline::report::Environment;
+use tautline::study::{EXAMPLE, Plan, RunError, Shard, Spent, State, Stopped, Study, run as go};
+
+use super::folder::Folder;
+use super::show;
+use crate::cli::engine::EngineArgs;
+use crate::cli::failure::Failure;
+use crate::cli::interrupt::{self, Writing};
+use crate::cli::progress::{Progress, with_progress};
+use crate::cli::{print, print_json};
+
+/// How often the state is saved.
+const CHECKPOINT: Duration = Duration::from_secs(10);
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct RunArgs {
+    /// The study's file (TOML); without one, the built-in example
+    file: Option<PathBuf>,
+    /// The folder for what comes out; must not hold a study yet
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How many traces, instead of what the file says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    traces: Option<u64>,
+    /// The seed, instead of the file's
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// Do only every N-th block, from the K-th on, counted from 0; `study merge` puts the shards together
+    #[arg(long, value_name = "K/N", value_parser = shard, default_value = "0/1", hide_default_value = true)]
+    shard: Shard,
+    /// Check everything, say what it would cost, and stop
+    #[arg(long)]
+    dry_run: bool,
+    #[command(flatten)]
+    engine: EngineArgs,
+    /// Print the summary as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ResumeArgs {
+    /// The study's folder
+    folder: PathBuf,
+    #[command(flatten)]
+    engine: EngineArgs,
+    /// Print the summary as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let wrong = || "give K/N with K from 0 to N - 1, such as 0/4".to_owned();
+    let (number, of) = text.split_once('/').ok_or_else(wrong)?;
+    let [number, of] = [number, of].map(|n| n.parse::<u32>().map_err(|_| wrong()));
+    let shard = Shard { number: number?, of: of? };
+    if shard.number < shard.of { Ok(shard) } else { Err(wrong()) }
+}
+
+pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
+    interrupt::listen()?;
+    let (mut plan, base) = match &args.file {
+        Some(file) => (Plan::read(file)?, file.parent().map(Path::to_owned).unwrap_or_default()),
+        None => (Plan::parse(EXAMPLE)?, PathBuf::new()),
+    };
+    let base = if base.as_os_str().is_empty() { PathBuf::from(".") } else { base };
+    plan.run.traces = args.traces.unwrap_or(plan.run.traces);
+    plan.run.seed = args.seed.unwrap_or(plan.run.seed);
+    // What was replaced is checked again.
+    let plan = plan.checked()?;
+    if args.shard.of > 1 && (plan.until.relative_error.is_some() || plan.until.seconds.is_some()) {
+        return Err(Failure::input(anyhow!(
+            "--shard: a shard cannot know when the whole study is certain enough; leave out [until]"
+        )));
+    }
+    let study = Study::open(plan, &base)?;
+    if args.dry_run {
+        return dry_run(&study, args);
+    }
+    let stem = args.file.as_deref().and_then(Path::file_stem).map_or("example".into(), |s| s.to_string_lossy());
+    let part = if args.shard == Shard::WHOLE { String::new() } else { format!("-{}", args.shard.number) };
+    let out = args.out.clone().unwrap_or_else(|| Folder::unused(&format!("{stem}-study{part}")));
+    let _writing = Writing::begin();
+    interrupt::check()?;
+    let folder = Folder::create(&out)?;
+    folder.remember(study.plan(), &base)?;
+    let state = State::new(&study, args.shard);
+    folder.save(&state)?;
+    proceed(&folder, &study, state, &args.engine, args.json)
+}
+
+pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
+    interrupt::listen()?;
+    let _writing = Writing::begin();
+    interrupt::check()?;
+    let (folder, study, state) = Folder::open(&args.folder)?;
+    proceed(&folder, &study, state, &args.engine, args.json)
+}
+
+/// Goes on until the end or Ctrl-C, and writes what there is to say.
+fn proceed(
+    folder: &Folder,
+    study: &Study,
+    mut state: State,
+    engine: &EngineArgs,
+    as_json: bool,
+) -> Result<(), Failure> {
+    let job = Arc::new(Job::new());
+    interrupt::stops(&job);
+    let (mut engines, on) = open_engines(engine, study)?;
+    let name = engines[0].name();
+    let left = state.shard().count(study.plan().blocks()).saturating_sub(state.done());
+    let traces = left * u64::from(study.plan().run.block);
+    let steps = study.plan().walk.steps().map_or(0, |steps| traces * u64::from(steps));
+    let progress = Progress::new(if steps > 0 { traces } else { 0 });
+    progress.begin(traces, steps);
+    let (start, mut saved) = (Instant::now(), Instant::now());
+    let outcome = with_progress(&progress, &job, || {
+        go(study, &mut engines, &mut state, &job, |state, _, _| {
+            if saved.elapsed() >= CHECKPOINT {
+                folder.save(state)?;
+                saved = Instant::now();
+            }
+            Ok::<(), Failure>(())
+        })
+    });
+    folder.save(&state)?;
+    let spent = match outcome {
+        Ok(spent) => spent,
+        Err(RunError::Engine(EngineError::Stopped)) => {
+            let (done, shown) = (state.done(), folder.path().display());
+            let all = state.shard().count(study.plan().blocks());
+            return Err(Failure::checkpoint(anyhow!(
+                "stopped; {done} of {all} blocks are saved: go on with `tautline study resume {shown}`"
+            )));
+        }
+        Err(RunError::Engine(error)) => return Err(error.into()),
+        Err(RunError::Plan(error)) => return Err(error.into()),
+        Err(RunError::Caller(failure)) => return Err(failure),
+    };
+    let run = cost(&state, name, &on, start.elapsed(), &spent, job.steps());
+    conclude(folder, study, &state, &run, as_json)
+}
+
+/// The engines, one for each anchor, and in words what they run on.
+fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn Engine + 's>>, String), Failure> {
+    let mut on = String::new();
+    let mut engines = Vec::new();
+    for model in study.models() {
+        let (engine, place) = args.open(model)?;
+        engines.push(engine);
+        on = place;
+    }
+    Ok((engines, on))
+}
+
+/// What the run cost and where it ran.
+fn cost(state: &State, engine: &str, on: &str, took: Duration, spent: &Spent, steps: u64) -> serde_json::Value {
+    let here = Environment::here(None);
+    let seconds = took.as_secs_f64();
+    json!({
+        "version": here.version, "engine": engine, "on": on, "processor": here.processor, "os": here.os,
+        "threads": here.threads, "shard": format!("{}/{}", state.shard().number, state.shard().of),
+        "steps": steps, "seconds": seconds, "steps_per_second": steps as f64 / seconds,
+        "seconds_of_all_runs": state.seconds(),
+        "spent": {
+            "drawing_beside": spent.drawn, "waiting_for_traces": spent.waited, "evaluating": spent.evaluated,
+            "tallying": spent.tallied,
+        },
+    })
+}
+
+/// Writes and prints the answer. Exit code 5 if it is not as certain as was asked for.
+pub(super) fn conclude(
+    folder: &Folder,
+    study: &Study,
+    state: &State,
+    run: &serde_json::Value,
+    as_json: bool,
+) -> Result<(), Failure> {
+    let summary = state.summary(study);
+    let pretty = |value: &serde_json::Value| format!("{value:#}\n");
+    let answer = serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?;
+    folder.write("summary.json", pretty(&answer).as_bytes())?;
+    folder.write("run.json", pretty(run).as_bytes())?;
+    if as_json {
+        print_json(&answer)?;
+    } else {
+        print(&show::table(&summary, Some(run)))?;
+        print(&format!("\nwritten to {}\n", folder.path().display()))?;
+    }
+    let wanted = study.plan().until.relative_error;
+    match (wanted, state.stopped()) {
+        (Some(wanted), Stopped::Complete | Stopped::Seconds) => Err(Failure::unmet(anyhow!(
+            "until.relative_error: the mean greatest length is not as certain as {wanted}; more traces would help"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Draws and evaluates a little, to say what all of it would cost.
+fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
+    let plan = study.plan();
+    let model = &study.models()[0];
+    let few = plan.run.traces.min(200);
+    let clock = Instant::now();
+    let traces: Vec<_> = (0..few).map(|number| study.trace(number)).collect::<Result<_, _>>()?;
+    let own: Vec<_> = traces.into_iter().step_by(study.models().len()).collect();
+    let (mut engine, on) = args.engine.open(model)?;
+    let evaluated = engine.evaluate(&own, &Job::new())?.len();
+    let each = clock.elapsed().as_secs_f64() / few.max(1) as f64;
+    let mut text = format!("the study is sound: {} traces in {} blocks", plan.run.traces, plan.blocks());
+    text += &format!(
+        ", {} walls, {} anchors, engine {} on {on}\n",
+        model.scene().walls().len(),
+        study.models().len(),
+        engine.name()
+    );
+    if evaluated > 0 {
+        let all = Duration::from_secs_f64(each * plan.run.traces as f64 / f64::from(args.shard.of));
+        text += &format!("about {} at most, going by {few} of the traces\n", show::duration(all));
+    }
+    print(&text)
+}

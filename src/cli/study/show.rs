@@ -1,0 +1,139 @@
+//! `tautline study show`, and the table that all of its kin print.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use tautline::study::{Estimate, Stopped, Summary};
+
+use super::folder::Folder;
+use crate::cli::failure::Failure;
+use crate::cli::summary::{grouped, short};
+use crate::cli::{print, print_json};
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// The study's folder
+    folder: PathBuf,
+    /// Print the summary as one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let (_, study, state) = Folder::open(&args.folder)?;
+    let summary = state.summary(&study);
+    if args.json {
+        return print_json(&serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?);
+    }
+    print(&table(&summary, None))
+}
+
+/// What people want to see first.
+pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> String {
+    let mut text = String::new();
+    let mut line = |text_of: std::fmt::Arguments<'_>| {
+        let _ = text.write_fmt(text_of);
+        text.push('\n');
+    };
+    let why = match summary.stopped {
+        Stopped::Complete => "all done",
+        Stopped::RelativeError => "as certain as was asked for",
+        Stopped::Seconds => "the time was over",
+        Stopped::Unfinished => "not finished",
+    };
+    let [traces, steps, events] = [summary.traces, summary.steps, summary.events].map(grouped);
+    line(format_args!("{traces} traces, {steps} steps, {events} events; {why}"));
+    if let Some(seconds) = run.and_then(|run| run["seconds"].as_f64()) {
+        let rate = summary.traces as f64 / seconds;
+        line(format_args!(
+            "{} on {} threads' time: {} traces/s",
+            duration(Duration::from_secs_f64(seconds)),
+            run.and_then(|r| r["threads"].as_u64()).unwrap_or(1),
+            short(rate)
+        ));
+    }
+    let confidence = 100.0 * summary.study.tallies.confidence;
+    line(format_args!(
+        "\n{:12}{:>12}  {:>24}{:>10}{:>10}{:>10}",
+        "a trace",
+        "mean",
+        format!("{confidence} % interval"),
+        "median",
+        "95 %",
+        "most"
+    ));
+    for scalar in &summary.scalars {
+        let quantile =
+            |share| scalar.quantiles.iter().find(|q| q.share == share).map_or(String::new(), |q| short(q.value.value));
+        let name = scalar.name.replace('_', " ");
+        line(format_args!(
+            "{name:12}{:>12}  {:>24}{:>10}{:>10}{:>10}",
+            short(scalar.mean.value),
+            interval(&scalar.mean),
+            quantile(0.5),
+            quantile(0.95),
+            short(scalar.max)
+        ));
+    }
+    if !summary.survival.is_empty() {
+        line(format_args!("\nropes never longer than"));
+    }
+    for survival in &summary.survival {
+        if let Some(last) = survival.curve.last() {
+            line(format_args!(
+                "  {:>10}  {:>7}  {}",
+                short(survival.limit),
+                percent(last.share.value),
+                shares(&last.share)
+            ));
+        }
+    }
+    if !summary.obstacles.is_empty() {
+        line(format_args!("\nropes wound all the way about an obstacle at the end (its first wall end)"));
+    }
+    for obstacle in summary.obstacles.iter().take(5) {
+        let at = format!("({}, {})", short(obstacle.at[0]), short(obstacle.at[1]));
+        line(format_args!("  {at:24}  {:>7}  {}", percent(obstacle.wound.value), shares(&obstacle.wound)));
+    }
+    if !summary.ropes.is_empty() {
+        line(format_args!("\nmost common ropes at the end"));
+    }
+    for rope in summary.ropes.iter().take(5) {
+        let turns = match rope.wraps.len() {
+            0 => "straight".to_owned(),
+            1 => "1 contact".to_owned(),
+            n => format!("{n} contacts"),
+        };
+        line(format_args!("  {turns:24}  {:>7}  {}", percent(rope.share.value), shares(&rope.share)));
+    }
+    text
+}
+
+fn interval(estimate: &Estimate) -> String {
+    match (estimate.low, estimate.high) {
+        (Some(low), Some(high)) => format!("{} to {}", short(low), short(high)),
+        _ => "?".to_owned(),
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+fn shares(estimate: &Estimate) -> String {
+    match (estimate.low, estimate.high) {
+        (Some(low), Some(high)) => format!("({} to {})", percent(low), percent(high)),
+        _ => String::new(),
+    }
+}
+
+/// A time in words.
+pub(super) fn duration(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    match seconds {
+        s if s < 120.0 => format!("{} s", short(s)),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}

@@ -1,0 +1,166 @@
+//! Reading and checking a study's file.
+
+use std::fs;
+use std::path::Path;
+
+use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
+
+/// The study that is run when no file is given, and the template of new ones.
+pub const EXAMPLE: &str = include_str!("example.toml");
+
+/// The most blocks that a study can have.
+const MOST_BLOCKS: u64 = 1 << 20;
+
+impl Plan {
+    /// Reads a study's file (TOML) and checks everything that can be checked without its scene.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong, with its line; for an unknown key, the one that it is most like.
+    pub fn read(path: &Path) -> Result<Plan, PlanError> {
+        let text = fs::read_to_string(path).map_err(|e| PlanError::new(e.to_string()).at(path))?;
+        Plan::parse(&text).map_err(|e| e.at(path))
+    }
+
+    /// The study that `text` describes.
+    ///
+    /// # Errors
+    ///
+    /// As [`read`](Self::read), without the file's name.
+    ///
+    /// ```
+    /// use tautline::study::{EXAMPLE, Plan};
+    /// let plan = Plan::parse(EXAMPLE)?;
+    /// assert_eq!(plan.run.traces, 10_000);
+    /// let wrong = EXAMPLE.replace("block", "blok");
+    /// assert!(Plan::parse(&wrong).unwrap_err().what.contains("did you mean `block`?"));
+    /// # Ok::<(), tautline::study::PlanError>(())
+    /// ```
+    pub fn parse(text: &str) -> Result<Plan, PlanError> {
+        let plan: Plan = toml::from_str(text).map_err(|e| PlanError::new(explain(text, &e)))?;
+        plan.checked()
+    }
+
+    /// The plan, if it can be carried out as far as can be told without its scene.
+    ///
+    /// # Errors
+    ///
+    /// The first key whose value will not do, and what would.
+    pub fn checked(self) -> Result<Plan, PlanError> {
+        self.check().map(|()| self)
+    }
+
+    /// The JSON Schema of the file.
+    pub fn schema() -> serde_json::Value {
+        schemars::schema_for!(Plan).to_value()
+    }
+
+    fn check(&self) -> Result<(), PlanError> {
+        let err = |what: String| Err(PlanError::new(what));
+        match (&self.scene.built_in, &self.scene.file) {
+            (Some(_), Some(_)) => return err("scene: give `built_in` or `file`, not both".into()),
+            (None, None) => return err("scene: give `file = \"...\"` or `built_in = \"rooms\"`".into()),
+            _ => {}
+        }
+        match &self.scene.anchor {
+            Some(AnchorPlan::Several(anchors)) if anchors.is_empty() || anchors.len() > 1024 => {
+                return err(format!("scene.anchor: give 1 to 1024 points, not {}", anchors.len()));
+            }
+            Some(AnchorPlan::Sampled(s)) if !(1..=1024).contains(&s.sample) => {
+                return err(format!("scene.anchor: sample 1 to 1024 points, not {}", s.sample));
+            }
+            _ => {}
+        }
+        let run = &self.run;
+        if run.traces == 0 || run.block == 0 {
+            return err("run: `traces` and `block` must be at least 1".into());
+        }
+        if self.blocks() > MOST_BLOCKS {
+            let least = run.traces.div_ceil(MOST_BLOCKS);
+            return err(format!("run.block: {} traces need blocks of at least {least}", run.traces));
+        }
+        let tallies = &self.tallies;
+        if !(tallies.confidence > 0.0 && tallies.confidence < 1.0) {
+            return err(format!("tallies.confidence: {} is not between 0 and 1", tallies.confidence));
+        }
+        if let Some(bad) = tallies.limits.iter().find(|l| !(l.is_finite() && **l >= 0.0)) {
+            return err(format!("tallies.limits: {bad} is no length"));
+        }
+        if !(tallies.bin.is_finite() && tallies.bin >= 0.0) {
+            return err(format!("tallies.bin: {} is no width", tallies.bin));
+        }
+        if tallies.map > 4096 {
+            return err(format!("tallies.map: at most 4096 cells side by side, not {}", tallies.map));
+        }
+        for (name, value) in [("relative_error", self.until.relative_error), ("seconds", self.until.seconds)] {
+            if value.is_some_and(|v| !(v.is_finite() && v > 0.0)) {
+                return err(format!("until.{name}: must be above 0"));
+            }
+        }
+        Ok(())
+    }
+
+    /// How many blocks it has.
+    pub fn blocks(&self) -> u64 {
+        self.run.traces.div_ceil(u64::from(self.run.block))
+    }
+
+    /// Whether its traces come from a file.
+    pub fn is_given(&self) -> bool {
+        matches!(self.walk, WalkPlan::Given { .. })
+    }
+}
+
+/// A message with a line number and, for an unknown key, the nearest known one.
+fn explain(text: &str, error: &toml::de::Error) -> String {
+    let line = error.span().map_or(String::new(), |span| {
+        let line = text[..span.start.min(text.len())].matches('\n').count() + 1;
+        format!("line {line}: ")
+    });
+    let message = error.message();
+    if message.contains("AnchorPlan") {
+        return format!("{line}anchor must be [x, y], a list of such, or {{ sample = N }}");
+    }
+    let named: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let nearest = match named.split_first() {
+        Some((&given, known)) if message.starts_with("unknown") => known
+            .iter()
+            .map(|k| (strsim::damerau_levenshtein(given, k), k))
+            .min()
+            .filter(|(distance, k)| *distance <= 1 + k.len() / 3)
+            .map(|(_, nearest)| format!("; did you mean `{nearest}`?")),
+        _ => None,
+    };
+    format!("{line}{message}{}", nearest.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(from: &str, to: &str) -> String {
+        assert!(EXAMPLE.contains(from), "{from}");
+        Plan::parse(&EXAMPLE.replacen(from, to, 1)).unwrap_err().what
+    }
+
+    #[test]
+    fn faults_are_named_with_their_place() {
+        assert!(fault("[tallies]", "[talies]").contains("did you mean `tallies`?"));
+        assert!(fault("steps = ", "stpes = ").contains("did you mean `steps`?"));
+        assert!(fault("kind = \"persistent\"", "kind = \"persistant\"").contains("did you mean `persistent`?"));
+        assert!(fault("traces = 10_000", "traces = 0").contains("at least 1"));
+        assert!(fault("traces = 10_000", "traces = -1").contains("line "));
+        assert!(fault("built_in = \"rooms\"", "anchor = \"here\"\nbuilt_in = \"rooms\"").contains("[x, y]"));
+        assert!(fault("built_in = \"rooms\"", "").contains("scene"));
+        assert!(fault("block = 1000", "block = 1\ntraces = 9_000_000").contains("line "));
+    }
+
+    #[test]
+    fn a_plan_written_is_read_back() {
+        let plan = Plan::parse(EXAMPLE).unwrap();
+        assert_eq!(Plan::parse(&toml::to_string(&plan).unwrap()).unwrap(), plan);
+        let json = serde_json::to_string(&plan).unwrap();
+        assert_eq!(serde_json::from_str::<Plan>(&json).unwrap(), plan);
+        assert!(Plan::schema()["properties"]["walk"].is_object());
+    }
+}

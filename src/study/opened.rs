@@ -1,0 +1,200 @@
+//! A study with its scene read and everything checked: ready to draw traces.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::free_space::FreeSpace;
+use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
+use super::random::{Purpose, Random};
+use super::tally::Setting;
+use super::walk::Walks;
+use crate::example::BuiltIn;
+use crate::scene::{Model, Scene, read_scene};
+use crate::trace::{SettledTrace, TraceReader, settle_owned};
+
+/// A study that can be run.
+pub struct Study {
+    plan: Plan,
+    pub(super) setting: Setting,
+    /// For each anchor; none if the traces are given.
+    walks: Vec<Walks>,
+    /// The file of given traces.
+    given: Option<PathBuf>,
+    identity: String,
+}
+
+impl Study {
+    /// Reads what the plan names, relative to `folder`, and checks it.
+    ///
+    /// # Errors
+    ///
+    /// A scene that cannot be read or has no place for the rope, a walk that cannot be walked there.
+    pub fn open(plan: Plan, folder: &Path) -> Result<Self, PlanError> {
+        let scene = match (&plan.scene.built_in, &plan.scene.file) {
+            (Some(name), _) => {
+                let built_in: BuiltIn = name.parse().map_err(|e| PlanError::new(format!("scene.built_in: {e}")))?;
+                built_in.scene(1)
+            }
+            (None, Some(file)) => {
+                read_scene(&folder.join(file)).map_err(|e| PlanError::new(format!("scene.file: {e}")))?
+            }
+            (None, None) => return Err(PlanError::new("scene: give `file` or `built_in`")),
+        };
+        let models = models(&plan, &scene)?;
+        let (walks, given) = match &plan.walk {
+            WalkPlan::Given { file } => (Vec::new(), Some(folder.join(file))),
+            walk => {
+                let of = |model: &Arc<Model>| Walks::new(model.clone(), walk, plan.run.seed);
+                (models.iter().map(of).collect::<Result<_, _>>()?, None)
+            }
+        };
+        if models.len() > 1 && given.is_some() {
+            return Err(PlanError::new("scene.anchor: given traces go by one anchor"));
+        }
+        let identity = identity(&plan, &models, given.as_deref())?;
+        let setting = Setting::new(&plan, models);
+        Ok(Study { plan, setting, walks, given, identity })
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The scene with each of its anchors; trace i has anchor i modulo their number.
+    pub fn models(&self) -> &[Arc<Model>] {
+        &self.setting.models
+    }
+
+    /// A hash of all that the answer depends on: the plan (but for what is written besides the summary), the scene, and the
+    /// traces given.
+    pub fn identity(&self) -> &str {
+        &self.identity
+    }
+
+    /// The numbers of the traces of a block.
+    pub fn block(&self, block: u64) -> Range<u64> {
+        let size = u64::from(self.plan.run.block);
+        block * size..((block + 1) * size).min(self.plan.run.traces)
+    }
+
+    /// Trace `number`, the same on every machine. O(its steps) where it is drawn; where the traces come from a file, that is
+    /// read up to it.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read or does not go that far.
+    pub fn trace(&self, number: u64) -> Result<SettledTrace, PlanError> {
+        Ok(self.source(number)?.take(number..number + 1)?.remove(0))
+    }
+
+    /// The scene with the anchor of trace `number`.
+    pub fn model(&self, number: u64) -> &Arc<Model> {
+        self.setting.model(number)
+    }
+
+    /// From where to take traces, from that of number `first` on.
+    pub(super) fn source(&self, first: u64) -> Result<Source<'_>, PlanError> {
+        let reader = match &self.given {
+            None => None,
+            Some(path) => {
+                let mut reader = TraceReader::open(path).map_err(|e| PlanError::new(e.to_string()))?;
+                skip(&mut reader, first)?;
+                Some(reader)
+            }
+        };
+        Ok(Source { study: self, reader, next: first })
+    }
+}
+
+/// Traces, one after the other.
+pub(super) struct Source<'s> {
+    study: &'s Study,
+    reader: Option<TraceReader>,
+    next: u64,
+}
+
+impl Source<'_> {
+    /// The traces with these numbers, in order; those before them are passed over.
+    pub(super) fn take(&mut self, numbers: Range<u64>) -> Result<Vec<SettledTrace>, PlanError> {
+        let Some(reader) = &mut self.reader else {
+            let walks = &self.study.walks;
+            let trace = |number| walks[self.study.setting.anchor(number)].trace(number);
+            return Ok(numbers.into_par_iter().map(trace).collect());
+        };
+        skip(reader, numbers.start - self.next)?;
+        self.next = numbers.end;
+        let model = &self.study.setting.models[0];
+        let mut settled: Vec<SettledTrace> = Vec::new();
+        let count = (numbers.end - numbers.start) as usize;
+        while settled.len() < count {
+            let more = reader.next_batch(count - settled.len(), 1 << 22).map_err(|e| PlanError::new(e.to_string()))?;
+            let Some(more) = more else {
+                let there = numbers.start + settled.len() as u64;
+                let asked = self.study.plan.run.traces;
+                return Err(PlanError::new(format!("run.traces: {asked} are asked for, but the file holds {there}")));
+            };
+            settled.par_extend(more.into_par_iter().map(|trace| settle_owned(model, trace)));
+        }
+        match settled.iter().find_map(|t| t.violation()) {
+            Some(violation) => Err(PlanError::new(violation.to_string())),
+            None => Ok(settled),
+        }
+    }
+}
+
+fn skip(reader: &mut TraceReader, mut count: u64) -> Result<(), PlanError> {
+    while count > 0 {
+        let most = count.min(1 << 16) as usize;
+        match reader.next_batch(most, 1 << 22).map_err(|e| PlanError::new(e.to_string()))? {
+            Some(skipped) => count -= skipped.len() as u64,
+            None => return Ok(()),
+        }
+    }
+    Ok(())
+}
+
+/// The scene with each of the plan's anchors.
+fn models(plan: &Plan, scene: &Scene) -> Result<Vec<Arc<Model>>, PlanError> {
+    let model = |anchor: Option<DVec2>| {
+        Model::new(scene.clone(), anchor).map(Arc::new).map_err(|e| PlanError::new(format!("scene.anchor: {e}")))
+    };
+    match &plan.scene.anchor {
+        None => Ok(vec![model(None)?]),
+        Some(AnchorPlan::One(at)) => Ok(vec![model(Some((*at).into()))?]),
+        Some(AnchorPlan::Several(all)) => all.iter().map(|&at| model(Some(at.into()))).collect(),
+        Some(AnchorPlan::Sampled(sampled)) => {
+            let whole = model(None)?;
+            let free = FreeSpace::new(&whole)
+                .ok_or_else(|| PlanError::new("scene.anchor: no free space can be found to sample anchors from"))?;
+            let draw = |i: u32| {
+                let mut random = Random::new(plan.run.seed, Purpose::Anchor, u64::from(i));
+                model(Some(free.draw(&mut random)))
+            };
+            (0..sampled.sample).map(draw).collect()
+        }
+    }
+}
+
+fn identity(plan: &Plan, models: &[Arc<Model>], given: Option<&Path>) -> Result<String, PlanError> {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(b"tautline study 1\n");
+    let plan = Plan { outputs: Default::default(), ..plan.clone() };
+    hasher.update(&serde_json::to_vec(&plan).expect("a plan can be written"));
+    let mut point = |p: DVec2| {
+        hasher.update(&p.x.to_bits().to_le_bytes());
+        hasher.update(&p.y.to_bits().to_le_bytes());
+    };
+    models.iter().for_each(|m| point(m.anchor()));
+    let scene = models[0].scene();
+    (0..scene.walls().len()).flat_map(|wall| scene.ends(wall)).for_each(point);
+    if let Some(path) = given {
+        let mut file = std::fs::File::open(path).map_err(|e| PlanError::new(e.to_string()).at(path))?;
+        hasher.update_reader(&mut file).map_err(|e| PlanError::new(e.to_string()).at(path))?;
+    }
+    Ok(hasher.finalize().to_hex().to_string())
+}

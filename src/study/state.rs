@@ -1,0 +1,199 @@
+//! How far a study is, in memory and as a file.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::opened::Study;
+use super::summary::Stopped;
+use super::tally::Tallies;
+use crate::output::{WholeFile, WriteError};
+
+/// What a state file begins with. The number changes when the format does.
+const MAGIC: &[u8] = b"tautline study state 1\n";
+
+/// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by `of`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Shard {
+    /// Which part, from 0.
+    pub number: u32,
+    /// How many parts there are.
+    pub of: u32,
+}
+
+impl Shard {
+    /// The whole.
+    pub const WHOLE: Shard = Shard { number: 0, of: 1 };
+
+    /// Its block number `index`, counted from 0.
+    pub fn block(self, index: u64) -> u64 {
+        u64::from(self.number) + index * u64::from(self.of)
+    }
+
+    /// How many of `blocks` blocks are its own.
+    pub fn count(self, blocks: u64) -> u64 {
+        (blocks + u64::from(self.of) - 1).saturating_sub(u64::from(self.number)) / u64::from(self.of)
+    }
+}
+
+/// How far a study, or a shard of one, is.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct State {
+    pub(super) identity: String,
+    pub(super) shard: Shard,
+    /// How many of the shard's blocks are done: the first ones.
+    pub(super) done: u64,
+    pub(super) stopped: Stopped,
+    /// How long that took, in seconds.
+    pub(super) seconds: f64,
+    pub(super) tallies: Tallies,
+}
+
+/// Why a state file cannot be used.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {what}", .path.display())]
+pub struct StateError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub what: String,
+}
+
+impl State {
+    /// Nothing is done.
+    pub fn new(study: &Study, shard: Shard) -> Self {
+        State {
+            identity: study.identity().to_owned(),
+            shard,
+            done: 0,
+            stopped: Stopped::Unfinished,
+            seconds: 0.0,
+            tallies: Tallies::default(),
+        }
+    }
+
+    /// Which part of the study it is.
+    pub fn shard(&self) -> Shard {
+        self.shard
+    }
+
+    /// How many of its blocks are done.
+    pub fn done(&self) -> u64 {
+        self.done
+    }
+
+    /// Whether there is nothing left to do, and why.
+    pub fn stopped(&self) -> Stopped {
+        self.stopped
+    }
+
+    /// How long it has taken so far, in seconds.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    /// Saves the state at `path`, in place of what stands there: whole or not at all, whatever happens meanwhile.
+    ///
+    /// # Errors
+    ///
+    /// What the operating system says.
+    pub fn save(&self, path: &Path) -> Result<(), WriteError> {
+        let bytes = postcard::to_stdvec(self).expect("a state can be written");
+        let mut file = WholeFile::create(path)?;
+        let mut write =
+            |bytes: &[u8]| file.write_all(bytes).map_err(|cause| WriteError::Io { path: path.into(), cause });
+        write(MAGIC)?;
+        write(blake3::hash(&bytes).as_bytes())?;
+        write(&bytes)?;
+        file.finish_durably()
+    }
+
+    /// Reads a state and checks that it is whole and of this study.
+    ///
+    /// # Errors
+    ///
+    /// A file that is no state, was written by another version, is damaged, or belongs to another study.
+    pub fn load(path: &Path, study: &Study) -> Result<Self, StateError> {
+        let fault = |what: &str| StateError { path: path.to_owned(), what: what.to_owned() };
+        let bytes = fs::read(path).map_err(|e| fault(&e.to_string()))?;
+        let Some(rest) = bytes.strip_prefix(MAGIC) else {
+            let kin = bytes.starts_with(&MAGIC[..MAGIC.len() - 2]);
+            return Err(fault(if kin {
+                "the state of another version of tautline"
+            } else {
+                "not the state of a study"
+            }));
+        };
+        let Some((hash, payload)) = rest.split_at_checked(blake3::OUT_LEN) else {
+            return Err(fault("damaged: it ends too early"));
+        };
+        if blake3::hash(payload).as_bytes() != hash {
+            return Err(fault("damaged: its check sum is wrong"));
+        }
+        let state: State = postcard::from_bytes(payload).map_err(|e| fault(&format!("damaged: {e}")))?;
+        if state.identity != study.identity() {
+            return Err(fault("it belongs to another study: the plan, the scene or the traces have changed since"));
+        }
+        Ok(state)
+    }
+}
+
+/// Puts the shards of one study together.
+///
+/// # Errors
+///
+/// Shards that belong to different studies, are not all there, are there twice, or are not done.
+pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, StateError> {
+    shards.sort_by_key(|(_, state)| state.shard);
+    let fault = |path: &Path, what: String| Err(StateError { path: path.to_owned(), what });
+    let mut whole = State::new(study, Shard::WHOLE);
+    let blocks = study.plan().blocks();
+    let of = shards.first().map_or(1, |(_, state)| state.shard.of);
+    for (i, (path, state)) in shards.iter().enumerate() {
+        let Shard { number, of: parts } = state.shard;
+        if parts != of {
+            return fault(path, format!("this is one of {parts} shards, others are one of {of}"));
+        }
+        if (number as usize) < i {
+            return fault(path, format!("shard {number}/{of} is there twice"));
+        }
+        if number as usize > i {
+            return fault(path, format!("shard {i}/{of} is missing; this is {number}/{of}"));
+        }
+        if state.done != state.shard.count(blocks) {
+            let (done, all) = (state.done, state.shard.count(blocks));
+            return fault(path, format!("shard {number}/{of} is not done: {done} of {all} blocks; resume it first"));
+        }
+    }
+    if let Some((path, _)) = shards.last()
+        && shards.len() < of as usize
+    {
+        return fault(path, format!("shard {}/{of} is missing", shards.len()));
+    }
+    for (_, state) in shards {
+        whole.seconds += state.seconds;
+        whole.tallies.merge(state.tallies);
+    }
+    whole.done = blocks;
+    whole.stopped = Stopped::Complete;
+    Ok(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_share_out_all_blocks() {
+        for of in 1..6 {
+            for blocks in 0..20 {
+                let shards = (0..of).map(|number| Shard { number, of });
+                let mut all: Vec<u64> = shards.flat_map(|s| (0..s.count(blocks)).map(move |i| s.block(i))).collect();
+                all.sort_unstable();
+                assert_eq!(all, (0..blocks).collect::<Vec<_>>());
+            }
+        }
+    }
+}

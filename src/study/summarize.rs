@@ -1,0 +1,189 @@
+//! From counts to answers.
+
+use std::collections::BTreeMap;
+
+use super::estimate::Confidence;
+use super::opened::Study;
+use super::state::State;
+use super::summary::{
+    Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Summary, Survival,
+    SurvivalPoint,
+};
+use super::tally::{Counts, Moments, SCALARS, Setting};
+use crate::rope::Side;
+
+/// Which quantiles are given.
+const QUANTILES: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99];
+
+/// How many wall ends are listed at the most.
+const CONTACTS: usize = 1000;
+
+impl State {
+    /// What the blocks done so far say. O(what was counted).
+    pub fn summary(&self, study: &Study) -> Summary {
+        let plan = study.plan();
+        let (setting, counts) = (&study.setting, &self.tallies.counts);
+        let confidence = Confidence::new(plan.tallies.confidence);
+        let moments = self.tallies.scalars();
+        Summary {
+            study: plan.clone(),
+            identity: self.identity.clone(),
+            traces: counts.traces.sum,
+            steps: counts.looks.sum - counts.traces.sum,
+            events: counts.events,
+            blocks: counts.traces.blocks,
+            stopped: self.stopped,
+            scalars: scalars(&confidence, &moments, counts),
+            histograms: (0..2).map(|i| histogram(&confidence, setting, counts, i)).collect(),
+            survival: survival(&confidence, setting, counts),
+            obstacles: obstacles(&confidence, setting, counts),
+            ropes: ropes(&confidence, setting, counts, plan.tallies.ropes as usize),
+            contacts: contacts(&confidence, setting, counts),
+            map: map(&confidence, setting, counts),
+        }
+    }
+}
+
+fn scalars(confidence: &Confidence, moments: &[Moments], counts: &Counts) -> Vec<Scalar> {
+    let traces = counts.traces.sum;
+    let quantile = |i: usize, share: f64| match i {
+        0 | 1 => counts.sketches[i].quantile(share).ok().flatten().unwrap_or(0.0),
+        _ => of_rank(&counts.values[i - 2], traces, share),
+    };
+    let scalar = |(i, (name, moments)): (usize, (&&str, &Moments))| {
+        let estimate = |share| {
+            let [low, high] = confidence.ranks(share, traces);
+            Estimate {
+                value: quantile(i, share),
+                error: None,
+                low: Some(quantile(i, low)),
+                high: Some(quantile(i, high)),
+            }
+        };
+        Scalar {
+            name: (*name).to_owned(),
+            mean: confidence.mean(moments),
+            deviation: moments.variance().map(f64::sqrt),
+            min: moments.min,
+            max: moments.max,
+            quantiles: QUANTILES.iter().map(|&share| Quantile { share, value: estimate(share) }).collect(),
+        }
+    };
+    SCALARS.iter().zip(moments).enumerate().map(scalar).collect()
+}
+
+/// The least value below or at which that share of the traces lies.
+fn of_rank(values: &BTreeMap<u64, u64>, traces: u64, share: f64) -> f64 {
+    let rank = ((share * traces as f64).ceil() as u64).max(1);
+    let mut below = 0;
+    let reached = values.iter().find(|&(_, &count)| {
+        below += count;
+        below >= rank
+    });
+    reached.or(values.iter().next_back()).map_or(0.0, |(&value, _)| value as f64)
+}
+
+fn histogram(confidence: &Confidence, setting: &Setting, counts: &Counts, i: usize) -> Histogram {
+    let bin = |(&bin, &count): (&u64, &u64)| Bin { bin, count, share: confidence.share(count, counts.traces.sum) };
+    Histogram { name: SCALARS[i].to_owned(), width: setting.bin, bins: counts.bins[i].iter().map(bin).collect() }
+}
+
+fn survival(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<Survival> {
+    let traces = counts.traces.sum;
+    let curve = |(&limit, exceeded): (&f64, &BTreeMap<u64, u64>)| {
+        let mut longer = 0;
+        let point = |(i, &step): (usize, &u64)| {
+            longer += exceeded.get(&(i as u64)).copied().unwrap_or(0);
+            SurvivalPoint { step, share: confidence.share(traces - longer, traces) }
+        };
+        Survival { limit, curve: setting.times.iter().enumerate().map(point).collect() }
+    };
+    let mut curves: Vec<Survival> = setting.limits.iter().zip(&counts.exceeded).map(curve).collect();
+    if counts.longest_trace > 0 {
+        curves.iter_mut().for_each(|c| c.curve.retain(|point| point.step <= counts.longest_trace));
+    }
+    curves
+}
+
+fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<Obstacle> {
+    let traces = counts.traces.sum;
+    let obstacle = |(&vertex, wound): (&u32, &super::tally::Wound)| {
+        let walls = setting.obstacles.get(vertex).map_or(0, |o| o.walls);
+        let n = traces as f64;
+        let mean = wound.turns as f64 / n;
+        let spread = (wound.squares as f64 - n * mean * mean).max(0.0);
+        let error = (traces > 1).then(|| (spread / (n - 1.0) / n).sqrt());
+        Obstacle {
+            vertex,
+            at: setting.models[0].vertices()[vertex as usize].into(),
+            walls,
+            wound: confidence.share(wound.left + wound.right, traces),
+            left: confidence.share(wound.left, traces),
+            right: confidence.share(wound.right, traces),
+            mean: confidence.around(mean, error, traces),
+        }
+    };
+    let mut all: Vec<Obstacle> = counts.wound.iter().map(obstacle).collect();
+    all.sort_by(|a, b| b.wound.value.total_cmp(&a.wound.value).then(a.vertex.cmp(&b.vertex)));
+    all
+}
+
+fn ropes(confidence: &Confidence, setting: &Setting, counts: &Counts, most: usize) -> Vec<CommonRope> {
+    let vertices = setting.models[0].vertices();
+    let rope = |(key, count, at_most): (&Vec<u32>, u64, u64)| {
+        let (anchor, contacts) = key.split_first().expect("a rope has an anchor");
+        let side = |&contact: &u32| if contact % 2 == 1 { Side::Right } else { Side::Left };
+        CommonRope {
+            count,
+            at_most: at_most.min(counts.traces.sum),
+            share: confidence.share(count, counts.traces.sum),
+            anchor: setting.models[*anchor as usize].anchor().into(),
+            wraps: contacts.iter().map(|c| vertices[*c as usize / 2].into()).collect(),
+            sides: contacts.iter().map(|c| side(c).name().to_owned()).collect(),
+        }
+    };
+    counts.ropes.top(most).into_iter().map(rope).collect()
+}
+
+fn contacts(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<Contact> {
+    let blocks = counts.traces.blocks;
+    let mut longest: Vec<_> = counts.touched.iter().collect();
+    longest.sort_by(|a, b| b.1.steps.sum.cmp(&a.1.steps.sum).then(a.0.cmp(b.0)));
+    longest.truncate(CONTACTS);
+    let contact = |(&vertex, touched): (&u32, &super::tally::Touched)| {
+        let (wraps, wraps_error) = touched.wraps.ratio(&counts.traces);
+        let (share, share_error) = touched.steps.ratio(&counts.looks);
+        Contact {
+            vertex,
+            at: setting.models[0].vertices()[vertex as usize].into(),
+            wraps: confidence.around(wraps, wraps_error, blocks),
+            share: confidence.around(share, share_error, blocks),
+        }
+    };
+    longest.into_iter().map(contact).collect()
+}
+
+fn map(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Option<Map> {
+    let grid = setting.cells?;
+    let cell = |(&number, cell): (&u32, &super::tally::CellCounts)| {
+        let (contacts, contacts_error) = cell.contacts.ratio(&counts.looks);
+        let length = (cell.visits.sum > 0).then(|| {
+            let (mean, error) = cell.lengths.ratio(&cell.visits);
+            let (mean, error) = (mean * setting.unit, error.map(|e| e * setting.unit));
+            confidence.around(mean, error, cell.visits.blocks)
+        });
+        Cell {
+            cell: u64::from(number),
+            visits: cell.visits.sum,
+            length,
+            contacts: confidence.around(contacts, contacts_error, counts.looks.blocks),
+        }
+    };
+    Some(Map {
+        low: grid.low.into(),
+        cell: grid.cell,
+        columns: grid.columns,
+        rows: grid.rows,
+        cells: counts.cells.iter().map(cell).collect(),
+    })
+}

@@ -1,0 +1,80 @@
+//! A trace's rope from event to event.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use glam::DVec2;
+
+use crate::rope::{Event, EventKind};
+use crate::trace::SettledTrace;
+
+/// A contact of the rope.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Held {
+    pub vertex: u32,
+    at: DVec2,
+    /// The rope's length up to it.
+    length: f64,
+    /// After which step it was wrapped.
+    since: u64,
+}
+
+/// Steps between which the rope bends round the same wall ends.
+pub(super) struct Span {
+    /// The numbers of the steps after which that is so.
+    pub steps: Range<u64>,
+    /// The last contact, or the anchor.
+    pub pivot: DVec2,
+    /// The rope's length up to there.
+    pub length: f64,
+}
+
+/// Calls `span` for each run of steps without an event, in order, and `left` for each contact with how many steps it
+/// lasted, when it goes or at the end. O(events).
+///
+/// `steps` is the number of the last step; `vertices` are the scene's.
+pub(super) fn follow(
+    anchor: DVec2,
+    vertices: &[DVec2],
+    steps: u64,
+    events: &[Event],
+    mut span: impl FnMut(Span),
+    mut left: impl FnMut(Held, u64),
+) {
+    let mut held: Vec<Held> = Vec::new();
+    let mut start = 0;
+    for event in events {
+        let step = u64::from(event.step);
+        let (pivot, length) = held.last().map_or((anchor, 0.0), |h| (h.at, h.length));
+        if step > start {
+            span(Span { steps: start..step, pivot, length });
+            start = step;
+        }
+        match event.kind {
+            EventKind::Wrap => {
+                let at = vertices[event.vertex as usize];
+                let length = length + pivot.distance(at);
+                held.push(Held { vertex: event.vertex, at, length, since: step });
+            }
+            EventKind::Unwrap => {
+                if let Some(gone) = held.pop() {
+                    left(gone, step - gone.since);
+                }
+            }
+        }
+    }
+    let (pivot, length) = held.last().map_or((anchor, 0.0), |h| (h.at, h.length));
+    span(Span { steps: start..steps + 1, pivot, length });
+    for gone in held {
+        left(gone, steps + 1 - gone.since);
+    }
+}
+
+/// Where the free end is after each step, step 0 being the move to the trace's first point.
+pub(super) fn ends_of_steps(trace: &SettledTrace) -> Cow<'_, [DVec2]> {
+    let points = trace.points();
+    if trace.is_plain() {
+        return Cow::Borrowed(points);
+    }
+    (0..points.len()).filter(|&i| trace.ends_step(i)).map(|i| points[i]).collect::<Vec<_>>().into()
+}
