@@ -247,11 +247,11 @@ pub struct PlanError {
 }
 
 impl PlanError {
-    #[expect(dead_code, reason = "the readers of studies come next")]
     pub(super) fn new(what: impl Into<String>) -> Self {
         PlanError { path: None, what: what.into() }
     }
 
+    #[expect(dead_code, reason = "the readers of studies come next")]
     pub(super) fn at(mut self, path: &Path) -> Self {
         self.path = Some(path.to_owned());
         self
