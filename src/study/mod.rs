@@ -25,3 +25,4 @@ pub use summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Stopped, Summary, Survival,
     SurvivalPoint,
 };
+pub use walk::Walks;

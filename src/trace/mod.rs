@@ -18,6 +18,7 @@ mod slide;
 use glam::DVec2;
 
 pub use read::{TraceReader, read_traces};
+pub(crate) use settle::{first_violation, settle_clear};
 pub use settle::{settle, settle_owned};
 pub use settled::{SettledTrace, Violation, ViolationKind, bounds};
 

@@ -28,7 +28,7 @@ const STEPS_PER_LOOK: usize = 16;
 /// [`check_point`]: crate::geometry::check_point
 /// [`read_traces`]: super::read_traces
 pub fn settle(model: &Model, trace: &Trace) -> SettledTrace {
-    let layout = Layout::new(model, trace);
+    let layout = Layout::new(model, trace, model.anchor());
     let points = layout.points(&trace.points);
     layout.settle(model, trace.id, points)
 }
@@ -39,12 +39,42 @@ pub fn settle(model: &Model, trace: &Trace) -> SettledTrace {
 ///
 /// Where [`settle`] does.
 pub fn settle_owned(model: &Model, mut trace: Trace) -> SettledTrace {
-    let layout = Layout::new(model, &trace);
+    let layout = Layout::new(model, &trace, model.anchor());
     let points = match layout.inserted.as_slice() {
         [] => std::mem::take(&mut trace.points),
         _ => layout.points(&trace.points),
     };
     layout.settle(model, trace.id, points)
+}
+
+/// [`settle_owned`] for a trace of which it is known that neither a step nor the straight way from the anchor to the first
+/// point touches a wall, unless it leaves the wall's end at which the anchor stands: the walls are not looked at.
+///
+/// # Panics
+///
+/// If the trace has no point.
+pub(crate) fn settle_clear(model: &Model, mut trace: Trace) -> SettledTrace {
+    if model.vertex_at(model.anchor()).is_some() {
+        // The points at the anchor need hairs.
+        return settle_owned(model, trace);
+    }
+    let layout = Layout::start(model, model.anchor(), trace.points[0]);
+    for &(i, p) in &layout.inserted {
+        trace.points.insert(i as usize, p);
+    }
+    layout.settle(model, trace.id, trace.points)
+}
+
+/// The first step that breaks the rules of a way that starts at its first point, which touches no wall or is a wall's end,
+/// wherever the anchor is.
+///
+/// # Panics
+///
+/// Where [`settle`] does.
+pub(crate) fn first_violation(model: &Model, way: Trace) -> Option<Violation> {
+    let layout = Layout::new(model, &way, way.points[0]);
+    let points = layout.points(&way.points);
+    layout.settle(model, way.id, points).violation
 }
 
 /// What is to be added to a trace's points, and what they touch.
@@ -58,15 +88,15 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// Looks at every step of a trace.
-    fn new(model: &Model, trace: &Trace) -> Self {
+    /// Looks at every step of a trace of a rope that is tied at `anchor`.
+    fn new(model: &Model, trace: &Trace, anchor: DVec2) -> Self {
         let points = trace.points.as_slice();
         assert!(!points.is_empty() && points.len() < 1 << 31, "a trace has 1 to 2^31 points");
         if let Err((_, fault)) = check_points(points) {
             panic!("trace {}: {fault}", trace.id);
         }
-        let mut layout = Layout::start(model, points[0]);
-        let mut from = model.anchor();
+        let mut layout = Layout::start(model, anchor, points[0]);
+        let mut from = anchor;
         for (block, first) in points.chunks(STEPS_PER_LOOK).zip((0..).step_by(STEPS_PER_LOOK)) {
             let (low, high) = block.iter().fold((from, from), |(low, high), &p| (lower(low, p), higher(high, p)));
             if !model.index().is_free(low, high) {
@@ -81,11 +111,11 @@ impl Layout {
     }
 
     /// Adds the anchor to a trace that does not start there.
-    fn start(model: &Model, first: DVec2) -> Self {
+    fn start(model: &Model, anchor: DVec2, first: DVec2) -> Self {
         let mut layout = Layout::default();
-        if first != model.anchor() {
-            layout.inserted.push((0, model.anchor()));
-            if model.vertex_at(model.anchor()).is_some() {
+        if first != anchor {
+            layout.inserted.push((0, anchor));
+            if model.vertex_at(anchor).is_some() {
                 layout.touching.push(0);
             }
         }

@@ -100,10 +100,51 @@ impl Mesh {
             scratch.views[views] = view;
             views += usize::from(view.is_open());
         }
-        let spokes = self.fan(o).len();
+        self.follow(at, self.fan(o).len(), [views, listed], scratch, seen, outside, most)
+    }
+
+    /// The same for a point inside a triangle or on its border, but not on a vertex; nothing bounds the look.
+    pub(super) fn expand_from(&self, at: DVec2, triangle: u32, scratch: &mut Scratch, seen: &mut Vec<u32>) {
+        scratch.start(self.len());
+        let (mut views, mut listed) = (0, 0);
+        scratch.make_room(3, 3);
+        for edge in 4 * triangle..4 * triangle + 3 {
+            let [right, left] = [edge, next(edge)].map(|edge| self.edge(edge).origin);
+            listed += self.see(right, true, listed, scratch);
+            scratch.views[views] = View { edge: self.edge(edge).twin, right, left, outside: [0; 4] };
+            views += usize::from(scratch.views[views].is_open());
+        }
+        self.follow(at, 1, [views, listed], scratch, seen, |_| 0, usize::MAX);
+    }
+
+    /// The triangles that meet what is visible from mesh vertex `o`, each once, ascending.
+    pub(super) fn triangles_seen(&self, o: u32, scratch: &mut Scratch) -> Vec<u32> {
+        let looked_at = self.expand(o, scratch, &mut Vec::new(), |_| 0, usize::MAX).unwrap_or(0);
+        let followed = looked_at - self.fan(o).len();
+        let edges = self.fan(o).iter().copied().chain(scratch.views[..followed].iter().map(|view| view.edge));
+        let mut triangles: Vec<u32> = edges.map(|edge| edge / 4).collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        triangles
+    }
+
+    /// Follows the first `views` views of `scratch`, of which `listed` vertices were seen and for which `before` triangles
+    /// were looked at.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "they are what its callers share")]
+    fn follow(
+        &self,
+        at: DVec2,
+        before: usize,
+        [mut views, mut listed]: [usize; 2],
+        scratch: &mut Scratch,
+        seen: &mut Vec<u32>,
+        outside: impl Fn(DVec2) -> u8,
+        most: usize,
+    ) -> Option<usize> {
         let mut done = 0;
         while done < views {
-            if spokes + done >= most {
+            if before + done >= most {
                 return None;
             }
             scratch.make_room(views, listed);
@@ -130,7 +171,7 @@ impl Mesh {
             views += usize::from((from_left < 0.0) & view.is_open());
         }
         seen.extend_from_slice(&scratch.seen[..listed]);
-        Some(spokes + done)
+        Some(before + done)
     }
 
     /// Writes `vertex` down as the one behind the `listed`, and returns 1 if it is to be kept: seen, and not before.

@@ -219,6 +219,16 @@ impl Mesh {
         self.vertices.len()
     }
 
+    /// How many triangles it has.
+    pub(super) fn triangles(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// The triangles beyond the edges of one, where these are not closed.
+    pub(super) fn neighbours(&self, triangle: u32) -> [Option<u32>; 3] {
+        [0, 1, 2].map(|i| Some(self.edge(4 * triangle + i).twin).filter(|&twin| twin != CLOSED).map(|twin| twin / 4))
+    }
+
     #[inline]
     pub(super) fn edge(&self, edge: u32) -> HalfEdge {
         self.triangles[edge as usize / 4].0[edge as usize % 4]

@@ -7,6 +7,7 @@
 mod crossings;
 mod expand;
 mod mesh;
+mod places;
 
 use glam::DVec2;
 

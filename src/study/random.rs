@@ -1,0 +1,241 @@
+//! Random numbers that are the same on every machine, and that any trace finds without those before it.
+//!
+//! Philox4x32-10 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011) makes numbers by
+//! encrypting a counter: nothing is carried from one number to the next. The key is a study's seed; the counter names the
+//! trace, what the numbers are for, and the block of four words.
+
+use glam::DVec2;
+
+/// How many blocks are made at once, so that several are made in one instruction.
+const BLOCKS: usize = 8;
+
+/// What random numbers are for: streams of different purposes are independent of each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub(in crate::study) enum Purpose {
+    /// The steps of a trace.
+    Walk = 0,
+    /// Where a trace starts.
+    Start = 1,
+    /// Where the rope is tied.
+    Anchor = 2,
+    /// Where a trace goes next.
+    Goal = 3,
+}
+
+/// The random numbers of one trace for one purpose.
+///
+/// There are 2^56 blocks of them, two words each, which none of 2^31 points uses up. The counter's second word holds the
+/// purpose in its low byte and in the others what does not fit into the first, so no stream runs into another's.
+pub(in crate::study) struct Random {
+    key: [u32; 2],
+    purpose: Purpose,
+    trace: u64,
+    /// The number of the next block to be made.
+    block: u64,
+    words: [u64; 2 * BLOCKS],
+    /// The first of `words` that was not drawn yet.
+    next: usize,
+}
+
+impl Random {
+    pub(in crate::study) fn new(seed: u64, purpose: Purpose, trace: u64) -> Self {
+        Random { key: halves(seed), purpose, trace, block: 0, words: [0; 2 * BLOCKS], next: 2 * BLOCKS }
+    }
+
+    #[inline]
+    fn word(&mut self) -> u64 {
+        if self.next == self.words.len() {
+            self.refill();
+        }
+        self.next += 1;
+        self.words[self.next - 1]
+    }
+
+    #[inline(never)]
+    fn refill(&mut self) {
+        let [low, high] = halves(self.trace);
+        let mut counters = [[0; BLOCKS], [0; BLOCKS], [low; BLOCKS], [high; BLOCKS]];
+        for i in 0..BLOCKS {
+            let [draw, carried] = halves(self.block + i as u64);
+            counters[0][i] = draw;
+            counters[1][i] = carried << 8 | self.purpose as u32;
+        }
+        let made = philox(counters, self.key);
+        for i in 0..BLOCKS {
+            self.words[2 * i] = u64::from(made[1][i]) << 32 | u64::from(made[0][i]);
+            self.words[2 * i + 1] = u64::from(made[3][i]) << 32 | u64::from(made[2][i]);
+        }
+        self.block += BLOCKS as u64;
+        self.next = 0;
+    }
+
+    /// From 0 up to 1, 1 left out: a multiple of 2^-53.
+    #[inline]
+    pub(in crate::study) fn unit(&mut self) -> f64 {
+        (self.word() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// From `-size` up to `size`.
+    #[inline]
+    pub(in crate::study) fn within(&mut self, size: f64) -> f64 {
+        (2.0 * self.unit() - 1.0) * size
+    }
+
+    /// A whole number below `n`, all as likely (Lemire, "Fast random integer generation in an interval", ACM Trans. Model.
+    /// Comput. Simul. 29, 2019). Panics if `n` is 0.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the tallies of studies come next"))]
+    pub(in crate::study) fn below(&mut self, n: u64) -> u64 {
+        assert!(n > 0, "no whole number is below 0");
+        // Of the 2^64 words, so many are one too many for some of the numbers.
+        let surplus = n.wrapping_neg() % n;
+        loop {
+            let product = u128::from(self.word()) * u128::from(n);
+            if product as u64 >= surplus {
+                return (product >> 64) as u64;
+            }
+        }
+    }
+
+    /// A direction, as a vector one long. Made without angles: sines and cosines are not the same on every machine.
+    #[inline]
+    pub(in crate::study) fn direction(&mut self) -> DVec2 {
+        let (DVec2 { x, y }, square) = self.in_disc();
+        // Twice the angle of a point of the disc is as uniform as the angle itself (von Neumann, 1951), and needs no root.
+        DVec2::new(x * x - y * y, 2.0 * x * y) / square
+    }
+
+    /// Two independent normal numbers of mean 0 and variance 1, by the polar method (Marsaglia and Bray, "A convenient method
+    /// for generating normal variables", SIAM Rev. 6, 1964).
+    #[inline]
+    pub(in crate::study) fn normal(&mut self) -> DVec2 {
+        let (p, square) = self.in_disc();
+        p * (-2.0 * libm::log(square) / square).sqrt()
+    }
+
+    /// A uniform point of the unit disc, its centre left out, and the square of its distance from there.
+    #[inline]
+    fn in_disc(&mut self) -> (DVec2, f64) {
+        loop {
+            let x = self.within(1.0);
+            let p = DVec2::new(x, self.within(1.0));
+            // Coordinates are multiples of 2^-52, so no square underflows.
+            let square = p.length_squared();
+            if square < 1.0 && square > 0.0 {
+                return (p, square);
+            }
+        }
+    }
+}
+
+/// The low and the high half.
+fn halves(word: u64) -> [u32; 2] {
+    [word as u32, (word >> 32) as u32]
+}
+
+/// Philox4x32-10 of `N` counters, each a column.
+#[inline]
+fn philox<const N: usize>(mut counters: [[u32; N]; 4], mut key: [u32; 2]) -> [[u32; N]; 4] {
+    for _ in 0..10 {
+        let [a, b, c, d] = counters;
+        for i in 0..N {
+            let first = u64::from(a[i]) * 0xD251_1F53;
+            let second = u64::from(c[i]) * 0xCD9E_8D57;
+            counters[0][i] = (second >> 32) as u32 ^ b[i] ^ key[0];
+            counters[1][i] = second as u32;
+            counters[2][i] = (first >> 32) as u32 ^ d[i] ^ key[1];
+            counters[3][i] = first as u32;
+        }
+        key = [key[0].wrapping_add(0x9E37_79B9), key[1].wrapping_add(0xBB67_AE85)];
+    }
+    counters
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn philox_of(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
+        philox(counter.map(|word| [word]), key).map(|[word]| word)
+    }
+
+    /// The known answers that are published with Random123 (`kat_vectors`).
+    #[test]
+    fn philox_gives_the_published_answers() {
+        let known = [
+            ([0; 4], [0; 2], [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]),
+            ([u32::MAX; 4], [u32::MAX; 2], [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd]),
+            (
+                [0x243f_6a88, 0x85a3_08d3, 0x1319_8a2e, 0x0370_7344],
+                [0xa409_3822, 0x299f_31d0],
+                [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1],
+            ),
+        ];
+        for (counter, key, answer) in known {
+            assert_eq!(philox_of(counter, key), answer);
+        }
+    }
+
+    #[test]
+    fn words_are_those_of_their_counters_and_never_come_again() {
+        let (seed, trace) = (0x0123_4567_89ab_cdef, 0xfedc_ba98_7654_3210);
+        let mut random = Random::new(seed, Purpose::Goal, trace);
+        // The last blocks before the first word of the counter is used up, and the first after.
+        random.block = (1 << 32) - BLOCKS as u64;
+        let words: Vec<u64> = (0..4 * BLOCKS).map(|_| random.word()).collect();
+        for (i, pair) in words.chunks(2).enumerate() {
+            let block = (1u64 << 32) - BLOCKS as u64 + i as u64;
+            let counter = [block as u32, 3 | ((block >> 32) as u32) << 8, 0x7654_3210, 0xfedc_ba98];
+            let [a, b, c, d] = philox_of(counter, [0x89ab_cdef, 0x0123_4567]).map(u64::from);
+            assert_eq!(pair, [b << 32 | a, d << 32 | c]);
+        }
+        let mut purposes = vec![];
+        for purpose in [Purpose::Walk, Purpose::Start, Purpose::Anchor, Purpose::Goal] {
+            purposes.push(Random::new(seed, purpose, trace).word());
+        }
+        purposes.sort_unstable();
+        purposes.dedup();
+        assert_eq!(purposes.len(), 4);
+    }
+
+    #[test]
+    fn numbers_below_a_bound_are_all_as_likely() {
+        let mut random = Random::new(1, Purpose::Walk, 0);
+        let mut counts = [0u32; 7];
+        for _ in 0..70_000 {
+            counts[random.below(7) as usize] += 1;
+        }
+        // Five standard errors of a count of mean 10,000.
+        assert!(counts.iter().all(|&c| (f64::from(c) - 10_000.0).abs() < 5.0 * 93.0), "{counts:?}");
+        assert_eq!(random.below(1), 0);
+        assert!((0..100).all(|_| random.below(u64::MAX) < u64::MAX));
+    }
+
+    #[test]
+    fn moments_are_those_of_the_distributions() {
+        let mut random = Random::new(2, Purpose::Walk, 0);
+        let n = 200_000;
+        let error = |variance: f64| 5.0 * (variance / f64::from(n)).sqrt();
+        let mean = |random: &mut Random, draw: &dyn Fn(&mut Random) -> f64| {
+            (0..n).map(|_| draw(random)).sum::<f64>() / f64::from(n)
+        };
+        let unit = mean(&mut random, &|r| r.unit());
+        assert!((unit - 0.5).abs() < error(1.0 / 12.0), "{unit}");
+        for power in 1..=4 {
+            let [x, y] = [0, 1].map(|i| mean(&mut random, &|r| r.normal()[i].powi(power)));
+            // The moments of a normal number, and their own variances: of x^4, 105 - 9.
+            let (moment, variance) = [(0.0, 1.0), (1.0, 2.0), (0.0, 15.0), (3.0, 96.0)][power as usize - 1];
+            assert!((x - moment).abs() < error(variance) && (y - moment).abs() < error(variance), "{power}: {x} {y}");
+        }
+        for m in 1..=4 {
+            // The m-th power of a uniform direction, as a complex number, is a uniform direction.
+            let powered = |r: &mut Random| {
+                let d = r.direction();
+                assert!((d.length() - 1.0).abs() < 1e-15);
+                (1..m).fold(d, |p, _| p.rotate(d)).x
+            };
+            let x = mean(&mut random, &powered);
+            assert!(x.abs() < error(0.5), "{m}: {x}");
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Where traces start.
+
+use glam::DVec2;
+
+use crate::scene::Model;
+use crate::study::free_space::{Place, Region};
+use crate::study::random::Random;
+use crate::study::{PlanError, Start};
+use crate::visibility::Visibility;
+
+/// What is wrong with a scene that cannot be triangulated.
+pub(super) const TOO_WIDE: &str = "the scene's coordinates cannot be triangulated: in magnitude the smallest that is not 0 \
+    and the largest must lie within 140 powers of two of each other";
+
+/// From where traces start.
+pub(super) enum Starts {
+    Anchor,
+    /// From what is visible from the anchor: it lies in these triangles.
+    Visible(Region),
+}
+
+/// Where a trace starts.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum From {
+    Anchor,
+    Place(Place),
+}
+
+impl Starts {
+    pub(super) fn new(model: &Model, start: Start) -> Result<Self, PlanError> {
+        let seen = |visibility: Visibility| Region::seen(model, &visibility);
+        match start {
+            Start::Anchor => Ok(Starts::Anchor),
+            Start::Visible => Visibility::new(model)
+                .and_then(seen)
+                .map(Starts::Visible)
+                .ok_or_else(|| PlanError::new(format!("walk.start: {TOO_WIDE}; or let traces start at the anchor"))),
+        }
+    }
+
+    /// Where a trace starts: the anchor if nearly nothing is visible from there.
+    pub(super) fn draw(&self, model: &Model, random: &mut Random) -> From {
+        match self {
+            Starts::Anchor => From::Anchor,
+            Starts::Visible(region) => {
+                region.draw(random, |p| model.is_clear(model.anchor(), p)).map_or(From::Anchor, From::Place)
+            }
+        }
+    }
+}
+
+impl From {
+    pub(super) fn at(self, model: &Model) -> DVec2 {
+        match self {
+            From::Anchor => model.anchor(),
+            From::Place(place) => place.at,
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! Traces of all kinds, against every wall.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::*;
+use crate::example::BuiltIn;
+use crate::geometry::{between, forwards, orient};
+use crate::scene::Scene;
+use crate::study::Start;
+use crate::trace::settle;
+
+const STARTS: [Start; 2] = [Start::Anchor, Start::Visible];
+
+/// Whether two segments have a point in common: each crosses the other's line, or an end of one lies on the other.
+fn meet(s: [DVec2; 2], t: [DVec2; 2]) -> bool {
+    let sides = |[a, b]: [DVec2; 2], of: [DVec2; 2]| of.map(|p| orient(a, b, p).total_cmp(&0.0));
+    let crosses = |line, of| matches!(sides(line, of), [one, other] if one == other.reverse() && one.is_ne());
+    let on = |p: DVec2, [a, b]: [DVec2; 2]| p == a || p == b || (orient(a, b, p) == 0.0 && between(a, b, p));
+    (crosses(s, t) && crosses(t, s)) || s.iter().any(|&p| on(p, t)) || t.iter().any(|&p| on(p, s))
+}
+
+/// Whether a step from `a` to `b` touches a wall from which it does not just leave.
+fn touches(model: &Model, [a, b]: [DVec2; 2]) -> bool {
+    (0..model.scene().walls().len()).map(|wall| model.scene().ends(wall)).any(|[u, v]| {
+        match [(u, v), (v, u)].iter().find(|end| end.0 == a) {
+            Some(&(_, far)) if a == model.anchor() => b != a && orient(a, far, b) == 0.0 && !forwards(far, a, b),
+            _ => meet([a, b], [u, v]),
+        }
+    })
+}
+
+/// Scenes with the lengths of steps that suit them. In the last the anchor stands at walls' ends.
+fn scenes() -> Vec<(Arc<Model>, f64)> {
+    let built_in = [BuiltIn::Rooms, BuiltIn::Random(150), BuiltIn::Random(1), BuiltIn::Lattice(120)];
+    let models = built_in.map(|s| (Arc::new(Model::new(s.scene(3), None).unwrap()), 4.0 * s.step()));
+    let walls =
+        [[[0.0, 0.0], [2.0, 0.5]], [[0.0, 0.0], [-1.0, 2.0]], [[-3.0, -3.0], [3.0, -2.0]], [[3.0, 3.0], [3.0, 1.0]]];
+    let scene = Scene::new(walls.map(|wall| wall.map(DVec2::from))).unwrap();
+    let at_end = Model::new(scene, Some(DVec2::ZERO)).unwrap();
+    models.into_iter().chain([(Arc::new(at_end), 0.5)]).collect()
+}
+
+/// All kinds of walks with a step of that length.
+fn walks(step: f64, steps: u32, start: Start) -> Vec<WalkPlan> {
+    let at = |at_walls| {
+        [
+            WalkPlan::Uniform { step, steps, start, at_walls },
+            WalkPlan::Gaussian { step, steps, start, at_walls },
+            WalkPlan::Persistent { step, steps, turn: 0.4, start, at_walls },
+        ]
+    };
+    [AtWalls::Redraw, AtWalls::Reject, AtWalls::Reflect].into_iter().flat_map(at).collect()
+}
+
+fn own_points(trace: &SettledTrace) -> Vec<DVec2> {
+    (0..trace.points().len()).filter(|&i| trace.ends_step(i)).map(|i| trace.points()[i]).collect()
+}
+
+#[test]
+fn walks_touch_no_wall_and_stay_in_the_box() {
+    for (model, step) in scenes() {
+        let (low, high) = model.bounds();
+        for start in STARTS {
+            for plan in walks(step, 250, start) {
+                let walks = Walks::new(model.clone(), &plan, 11).unwrap();
+                for number in [0, 1, 2, u64::MAX] {
+                    let trace = walks.trace(number);
+                    let points = own_points(&trace);
+                    assert_eq!((trace.id(), points.len(), trace.violation()), (number, 251, None));
+                    assert_eq!(start == Start::Anchor, points[0] == model.anchor());
+                    let way: Vec<DVec2> = [&[model.anchor()], points.as_slice()].concat();
+                    for pair in way.windows(2) {
+                        assert!(!touches(&model, [pair[0], pair[1]]), "{plan:?}, trace {number}: {pair:?}");
+                        assert!(pair[1].cmpge(low).all() && pair[1].cmple(high).all(), "{plan:?}: {pair:?}");
+                    }
+                    // What is known of it without a look at the walls is what the look says.
+                    assert_eq!(trace, settle(&model, &Trace { id: number, points }), "{plan:?}");
+                    let far = way.iter().map(|p| p.distance(way[1])).fold(0.0, f64::max);
+                    assert!(far > 2.0 * step, "{plan:?}, trace {number} stays within {far}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn drives_keep_to_the_rules_and_to_their_steps() {
+    for (model, step) in scenes() {
+        let (low, high) = model.bounds();
+        for start in STARTS {
+            let plan = WalkPlan::Waypoints { step, steps: 400, start };
+            let walks = Walks::new(model.clone(), &plan, 11).unwrap();
+            for number in 0..6 {
+                let trace = walks.trace(number);
+                let points = own_points(&trace);
+                assert_eq!((points.len(), trace.violation()), (401, None), "trace {number}");
+                assert!(points.iter().all(|p| p.cmpge(low).all() && p.cmple(high).all()));
+                assert!(points.windows(2).all(|pair| pair[0] != pair[1]), "it goes on and on");
+                for pair in points.windows(2).filter(|pair| pair[0].distance(pair[1]) > step * (1.0 + 1e-12)) {
+                    // Only where there is no room for the points between.
+                    let at_ends = pair.iter().all(|&p| model.vertex_at(p).is_some() || p == model.anchor());
+                    assert!(at_ends, "trace {number}: {pair:?} is longer than {step}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_trace_is_found_by_its_number_alone() {
+    let (model, step) = scenes().remove(0);
+    let drive = WalkPlan::Waypoints { step, steps: 50, start: Start::Visible };
+    for plan in walks(step, 50, Start::Visible).into_iter().chain([drive]) {
+        let all: Vec<_> = {
+            let walks = Walks::new(model.clone(), &plan, 5).unwrap();
+            (0..40u64).into_par_iter().map(|number| walks.trace(number)).collect()
+        };
+        let walks = Walks::new(model.clone(), &plan, 5).unwrap();
+        for number in [39, 3, 17, 3, 0] {
+            assert_eq!(walks.trace(number), all[number as usize], "{plan:?}");
+        }
+        assert!((1..40).all(|i| all[i].points() != all[0].points()), "{plan:?}");
+        assert_ne!(Walks::new(model.clone(), &plan, 6).unwrap().trace(3).points(), all[3].points());
+    }
+}
+
+/// A square room of that size round the anchor.
+fn square(half: f64) -> Arc<Model> {
+    let corners = [[-half, -half], [half, -half], [half, half], [-half, half]].map(DVec2::from);
+    let scene = Scene::new((0..4).map(|i| [corners[i], corners[(i + 1) % 4]])).unwrap();
+    Arc::new(Model::new(scene, Some(DVec2::ZERO)).unwrap())
+}
+
+#[test]
+fn steps_have_their_length_and_headings_turn_within_their_bounds() {
+    for (half, is_free) in [(1e6, true), (3.0, false)] {
+        for plan in walks(0.5, 2000, Start::Anchor) {
+            let points = own_points(&Walks::new(square(half), &plan, 1).unwrap().trace(0));
+            let steps: Vec<DVec2> = points.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let (at_walls, turn) = match plan {
+                WalkPlan::Uniform { at_walls, .. } => (at_walls, None),
+                WalkPlan::Persistent { at_walls, turn, .. } => (at_walls, Some(turn)),
+                _ => continue,
+            };
+            let has_length = |s: &&DVec2| (s.length() - 0.5).abs() < 1e-9;
+            let taken: Vec<&DVec2> = steps.iter().filter(|s| **s != DVec2::ZERO).collect();
+            assert!(taken.len() > 1000 && (!is_free || taken.len() == 2000), "{plan:?}: {}", taken.len());
+            if is_free || at_walls != AtWalls::Reflect {
+                assert!(taken.iter().all(has_length), "{plan:?}");
+            }
+            if let Some(turn) = turn.filter(|_| is_free) {
+                let turns: Vec<f64> = steps.windows(2).map(|pair| pair[0].angle_to(pair[1])).collect();
+                assert!(turns.iter().all(|t| t.abs() < turn + 1e-9));
+                let mean = turns.iter().sum::<f64>() / 1999.0;
+                assert!(mean.abs() < 5.0 * turn / (3.0 * 1999f64).sqrt() && turns.iter().any(|t| t.abs() > 0.9 * turn));
+            }
+        }
+    }
+}
+
+#[test]
+fn gaussian_steps_have_their_moments() {
+    let plan = WalkPlan::Gaussian { step: 0.5, steps: 40_000, start: Start::Anchor, at_walls: AtWalls::Redraw };
+    let points = own_points(&Walks::new(square(1e6), &plan, 1).unwrap().trace(0));
+    let n = 40_000f64;
+    let steps: Vec<DVec2> = points.windows(2).map(|pair| (pair[1] - pair[0]) / 0.5).collect();
+    let mean = steps.iter().sum::<DVec2>() / n;
+    let square = steps.iter().map(|s| s * s).sum::<DVec2>() / n;
+    let product = steps.iter().map(|s| s.x * s.y).sum::<f64>() / n;
+    assert!(mean.abs().max_element() < 5.0 / n.sqrt(), "{mean}");
+    assert!((square - 1.0).abs().max_element() < 5.0 * (2.0 / n).sqrt(), "{square}");
+    assert!(product.abs() < 5.0 / n.sqrt(), "{product}");
+}
+
+#[test]
+fn starts_are_uniform_over_what_is_visible() {
+    // A wall before the anchor hides what lies behind it: a quarter of the room, from below the anchor at its centre.
+    let corners = [[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0]].map(DVec2::from);
+    let hiding = [[-1.0, 1.0], [1.0, 1.0]].map(DVec2::from);
+    let scene = Scene::new((0..4).map(|i| [corners[i], corners[(i + 1) % 4]]).chain([hiding])).unwrap();
+    let model = Arc::new(Model::new(scene, Some(DVec2::ZERO)).unwrap());
+    let plan = WalkPlan::Uniform { step: 0.1, steps: 1, start: Start::Visible, at_walls: AtWalls::Redraw };
+    let walks = Walks::new(model, &plan, 1).unwrap();
+    let mut counts = [0; 4];
+    for number in 0..4900 {
+        let p = own_points(&walks.trace(number))[0];
+        // Left, right, below; and above, of which only the unit triangle before the wall is visible, 1 of 16.
+        let side = if p.x.abs() > p.y.abs() { usize::from(p.x > 0.0) } else { 2 + usize::from(p.y > 0.0) };
+        assert!(side != 3 || p.y < 1.0, "{p} is hidden");
+        counts[side] += 1;
+    }
+    let expected = [1600.0, 1600.0, 1600.0, 100.0];
+    assert!((0..4).all(|i| (f64::from(counts[i]) - expected[i]).abs() < 5.0 * expected[i].sqrt()), "{counts:?}");
+}
+
+#[test]
+fn errors_say_what_would_be_right() {
+    let error = |model: Arc<Model>, plan: WalkPlan| {
+        Walks::new(model, &plan, 1).err().map(|e| e.to_string()).unwrap_or_default()
+    };
+    let uniform = |step, steps| WalkPlan::Uniform { step, steps, start: Start::Anchor, at_walls: AtWalls::Redraw };
+    for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(error(square(1.0), uniform(step, 10)).contains("give a number above 0"), "{step}");
+    }
+    for steps in [0, (1 << 31) - 1, u32::MAX] {
+        assert!(error(square(1.0), uniform(0.1, steps)).contains("from 1 to 2147483646"), "{steps}");
+    }
+    for turn in [-0.1, 3.15, f64::NAN] {
+        let plan = WalkPlan::Persistent { step: 0.1, steps: 9, turn, start: Start::Anchor, at_walls: AtWalls::Redraw };
+        assert!(error(square(1.0), plan).contains("from 0 to pi"), "{turn}");
+    }
+    let flat = Scene::new([[DVec2::ZERO, DVec2::X]]).unwrap();
+    let flat = Arc::new(Model::new(flat, Some(DVec2::new(2.0, 0.0))).unwrap());
+    assert!(error(flat, uniform(0.1, 9)).contains("no room to walk in"));
+    assert!(error(square(1.0), WalkPlan::Given { file: "a.csv".into() }).contains("not drawn"));
+    let wide = Scene::new([[DVec2::ZERO, DVec2::new(1e120, 1e-120)], [DVec2::Y, DVec2::X]]).unwrap();
+    let wide = Arc::new(Model::new(wide, Some(DVec2::splat(2.0))).unwrap());
+    let drive = WalkPlan::Waypoints { step: 0.1, steps: 9, start: Start::Anchor };
+    assert!(error(wide, drive).contains("cannot be triangulated"));
+}
