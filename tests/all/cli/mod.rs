@@ -7,6 +7,7 @@ mod process;
 mod reports;
 mod results;
 mod scenes;
+mod study;
 mod traces;
 mod usage;
 

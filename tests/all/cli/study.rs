@@ -1,0 +1,212 @@
+//! Monte-Carlo studies: the same answer however they are run.
+
+use std::process::Stdio;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::{Finished, Folder};
+
+/// A study of several blocks, with two anchors, of which the last is smaller than the others.
+const STUDY: &str = r#"
+[scene]
+built_in = "rooms"
+anchor = { sample = 3 }
+[walk]
+kind = "persistent"
+step = 0.25
+steps = 200
+start = "visible"
+[run]
+traces = 5350
+block = 250
+[tallies]
+limits = [5.0, 20.0]
+"#;
+
+fn study() -> Folder {
+    let folder = Folder::new();
+    folder.write("s.toml", STUDY);
+    folder
+}
+
+/// The files of a run's answer.
+fn answer(folder: &Folder, run: &str) -> Vec<u8> {
+    folder.read(&format!("{run}/summary.json"))
+}
+
+fn json(folder: &Folder, path: &str) -> Value {
+    serde_json::from_str(&folder.text(path)).unwrap()
+}
+
+#[test]
+fn the_answer_is_the_same_on_all_engines_threads_and_shards() {
+    let folder = study();
+    folder.done("study run s.toml --out a --engine cpu");
+    let truth = answer(&folder, "a");
+    let summary = json(&folder, "a/summary.json");
+    assert_eq!((summary["traces"].as_u64(), summary["blocks"].as_u64()), (Some(5350), Some(22)));
+    assert!(summary["events"].as_u64().unwrap() > 1000 && !summary["obstacles"].as_array().unwrap().is_empty());
+    for (out, engine) in [("reference", "reference"), ("gpu", "gpu --adapter software")] {
+        folder.done(&format!("study run s.toml --out {out} --engine {engine}"));
+        assert!(answer(&folder, out) == truth, "{engine}");
+    }
+    let one = Finished::of(folder.command("study run s.toml --out one").env("RAYON_NUM_THREADS", "1"));
+    assert_eq!(one.code, Some(0), "{}", one.stderr);
+    assert!(answer(&folder, "one") == truth, "one thread");
+
+    for k in 0..3 {
+        folder.done(&format!("study run s.toml --out k{k} --shard {k}/3"));
+    }
+    folder.done("study merge k2 k0 k1 --out whole");
+    assert!(answer(&folder, "whole") == truth, "merged");
+    // A merged study is a study like others.
+    folder.done("study show whole");
+    folder.refused(2, "study merge k0 k1 --out no", &["shard 2/3 is missing"]);
+    folder.refused(2, "study merge k0 k2 --out no", &["shard 1/3 is missing"]);
+    folder.refused(2, "study merge k0 k1 k1 k2 --out no", &["shard 1/3 is there twice"]);
+    folder.done("study run s.toml --out q --shard 3/4");
+    folder.refused(2, "study merge k0 k1 k2 q --out no", &["one of 4 shards"]);
+    folder.done("study run s.toml --out other --seed 2 --shard 1/3");
+    assert!(answer(&folder, "other") != answer(&folder, "k1"));
+    folder.refused(2, "study merge k0 other k2 --out no", &["another study"]);
+    assert!(!folder.path("no").exists());
+}
+
+#[test]
+fn a_study_killed_at_any_moment_goes_on_and_ends_the_same() {
+    let folder = study();
+    let long = STUDY.replace("5350", "60000");
+    folder.write("long.toml", &long);
+    folder.done("study run long.toml --out a --engine cpu");
+    let mut run = "run long.toml --out b".to_owned();
+    for (round, by_hand) in [true, false, true, false].into_iter().enumerate() {
+        let mut command = folder.command(&format!("study {run} --engine cpu"));
+        let mut child = command.stderr(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let start = Instant::now();
+        while !folder.path("b/state.bin").exists() && start.elapsed() < Duration::from_secs(60) {
+            sleep(Duration::from_millis(5));
+        }
+        sleep(Duration::from_millis(60 * round as u64));
+        if by_hand {
+            std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+            let code = child.wait().unwrap().code();
+            assert!(code == Some(4) || code == Some(0), "{code:?}");
+        } else {
+            child.kill().unwrap();
+            child.wait().unwrap();
+        }
+        run = "resume b".to_owned();
+    }
+    folder.done("study resume b --engine cpu");
+    assert!(answer(&folder, "b") == answer(&folder, "a"));
+    // One that is done stays as it is.
+    folder.done("study resume b --engine cpu");
+    assert!(answer(&folder, "b") == answer(&folder, "a"));
+}
+
+#[test]
+fn states_that_are_damaged_or_foreign_are_refused() {
+    let folder = study();
+    folder.done("study run s.toml --out a --traces 500");
+    let state = folder.read("a/state.bin");
+    let mut flipped = state.clone();
+    let middle = state.len() / 2;
+    flipped[middle] ^= 1;
+    let other = "tautline study state 9\n".as_bytes().to_vec();
+    for (bytes, why) in [
+        (flipped, "check sum"),
+        (state[..30].to_vec(), "ends too early"),
+        (state[..state.len() - 1].to_vec(), "check sum"),
+        (Vec::new(), "not the state of a study"),
+        (other, "another version"),
+    ] {
+        folder.write("a/state.bin", bytes);
+        folder.refused(2, "study resume a", &["a/state.bin: ", why]);
+        folder.refused(2, "study show a", &["a/state.bin: ", why]);
+    }
+    folder.write("a/state.bin", &state);
+    let changed = folder.text("a/study.json").replace("\"seed\": 1", "\"seed\": 2");
+    folder.write("a/study.json", changed);
+    folder.refused(2, "study resume a", &["another study"]);
+    folder.refused(2, "study run s.toml --out a", &["holds a study already", "study resume a"]);
+}
+
+#[test]
+fn a_study_ends_when_it_is_certain_enough() {
+    let folder = study();
+    folder.write("u.toml", format!("{STUDY}[until]\nrelative_error = 0.02\n"));
+    folder.done("study run u.toml --out a --engine cpu");
+    folder.done("study run u.toml --out b --engine reference");
+    assert!(answer(&folder, "a") == answer(&folder, "b"));
+    let summary = json(&folder, "a/summary.json");
+    assert_eq!(summary["stopped"], "relative_error");
+    let traces = summary["traces"].as_u64().unwrap();
+    assert!(traces < 5350 && traces % 250 == 0, "{traces}");
+    let mean = &summary["scalars"][1]["mean"];
+    let [value, high] = ["value", "high"].map(|k| mean[k].as_f64().unwrap());
+    assert!(high - value <= 0.02 * value);
+    // One block less was not enough.
+    let short = folder.run(&format!("study run u.toml --out c --traces {}", traces - 250));
+    assert_eq!(short.code, Some(5), "{}", short.stderr);
+    assert!(short.stderr.contains("relative_error") && folder.path("c/summary.json").exists());
+    folder.refused(2, "study run u.toml --out d --shard 0/2", &["--shard"]);
+}
+
+#[test]
+fn one_trace_is_replayed() {
+    let folder = study();
+    folder.done("study run s.toml --out a --traces 500");
+    let told = folder.done("study replay a --trace 7 --events e.jsonl").stdout;
+    assert!(told.starts_with("trace 7: 200 steps, "), "{told}");
+    let events = folder.text("e.jsonl").lines().count();
+    assert!(told.contains(&format!(" {events} events")), "{told} {events}");
+    folder.refused(2, "study replay a --trace 500", &["0 to 499"]);
+}
+
+#[test]
+fn given_traces_are_studied_too() {
+    let folder = Folder::floor_plan(700, 50);
+    folder.write(
+        "g.toml",
+        "[scene]\nfile = \"s.geojson\"\n[walk]\nkind = \"given\"\nfile = \"t.csv\"\n[run]\ntraces = 700\nblock = 64\n",
+    );
+    folder.done("study run g.toml --out a");
+    for k in 0..2 {
+        folder.done(&format!("study run g.toml --out k{k} --shard {k}/2"));
+    }
+    folder.done("study merge k0 k1 --out b");
+    assert!(answer(&folder, "a") == answer(&folder, "b"));
+    assert_eq!(json(&folder, "a/summary.json")["traces"], 700);
+    let results = folder.done("eval --scene s.geojson --traces t.csv --json").stdout;
+    let report: Value = serde_json::from_str(&results).unwrap();
+    let mean = json(&folder, "a/summary.json")["scalars"][0]["mean"]["value"].as_f64().unwrap();
+    assert!((report["length"]["mean"].as_f64().unwrap() - mean).abs() < 1e-9 * mean);
+    folder.refused(2, "study run g.toml --out c --traces 701", &["the file holds 700"]);
+}
+
+#[test]
+fn faults_in_a_study_are_named() {
+    let folder = study();
+    for (from, to, parts) in [
+        ("steps = 200", "stpes = 200", ["s.toml: line", "did you mean `steps`?"]),
+        ("\"rooms\"", "\"romms\"", ["scene.built_in", "romms"]),
+        ("step = 0.25", "step = -1.0", ["step", "-1"]),
+        ("block = 250", "block = 0", ["s.toml: run", "at least 1"]),
+        ("sample = 3", "sample = 0", ["anchor", "1 to 1024"]),
+    ] {
+        folder.write("s.toml", STUDY.replacen(from, to, 1));
+        folder.refused(2, "study run s.toml --out a", &parts);
+    }
+    folder.refused(2, "study run no.toml", &["no.toml"]);
+    folder.refused(2, "study resume no", &["no/study.json"]);
+    folder.refused(2, "study run s.toml --shard 3/3", &["K/N"]);
+    folder.write("s.toml", STUDY);
+    let told = folder.done("study run s.toml --dry-run").stdout;
+    assert!(told.contains("5350 traces in 22 blocks"), "{told}");
+    folder.done("study init new.toml");
+    folder.refused(2, "study init new.toml", &["new.toml"]);
+    folder.done("study run new.toml --traces 100 --out b");
+    assert!(folder.done("study schema").stdout.contains("\"walk\""));
+}
