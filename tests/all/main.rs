@@ -8,6 +8,7 @@ mod golden;
 mod random;
 mod scenes;
 mod shader;
+mod study_truth;
 mod support;
 mod touch;
 mod visibility;
