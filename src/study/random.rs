@@ -6,8 +6,12 @@
 
 use glam::DVec2;
 
-/// How many blocks are made at once, so that several are made in one instruction.
+/// How many blocks are made at once, and how many of them side by side, so that several are made in one instruction.
 const BLOCKS: usize = 8;
+const LANES: usize = 4;
+
+/// The low half of a word.
+const LOW: u64 = u32::MAX as u64;
 
 /// What random numbers are for: streams of different purposes are independent of each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,7 +32,7 @@ pub(in crate::study) enum Purpose {
 /// There are 2^56 blocks of them, two words each, which none of 2^31 points uses up. The counter's second word holds the
 /// purpose in its low byte and in the others what does not fit into the first, so no stream runs into another's.
 pub(in crate::study) struct Random {
-    key: [u32; 2],
+    key: [u64; 2],
     purpose: Purpose,
     trace: u64,
     /// The number of the next block to be made.
@@ -55,18 +59,17 @@ impl Random {
     #[inline(never)]
     fn refill(&mut self) {
         let [low, high] = halves(self.trace);
-        let mut counters = [[0; BLOCKS], [0; BLOCKS], [low; BLOCKS], [high; BLOCKS]];
-        for i in 0..BLOCKS {
-            let [draw, carried] = halves(self.block + i as u64);
-            counters[0][i] = draw;
-            counters[1][i] = carried << 8 | self.purpose as u32;
+        for words in self.words.chunks_exact_mut(2 * LANES) {
+            let blocks: [u64; LANES] = std::array::from_fn(|i| self.block + i as u64);
+            // What the first word of a counter cannot hold goes above the purpose.
+            let carried = blocks.map(|block| block >> 32 << 8 | self.purpose as u64);
+            let made = philox([blocks.map(|block| block & LOW), carried, [low; LANES], [high; LANES]], self.key);
+            for i in 0..LANES {
+                words[2 * i] = made[1][i] << 32 | made[0][i];
+                words[2 * i + 1] = made[3][i] << 32 | made[2][i];
+            }
+            self.block += LANES as u64;
         }
-        let made = philox(counters, self.key);
-        for i in 0..BLOCKS {
-            self.words[2 * i] = u64::from(made[1][i]) << 32 | u64::from(made[0][i]);
-            self.words[2 * i + 1] = u64::from(made[3][i]) << 32 | u64::from(made[2][i]);
-        }
-        self.block += BLOCKS as u64;
         self.next = 0;
     }
 
@@ -113,15 +116,16 @@ impl Random {
         p * (-2.0 * libm::log(square) / square).sqrt()
     }
 
-    /// A uniform point of the unit disc, its centre left out, and the square of its distance from there.
+    /// A uniform point of the unit disc, its centre left out, and the square of its distance from there. Each coordinate is an
+    /// odd multiple of 2^-32, so one word makes a point, and no square is 0.
     #[inline]
     fn in_disc(&mut self) -> (DVec2, f64) {
         loop {
-            let x = self.within(1.0);
-            let p = DVec2::new(x, self.within(1.0));
-            // Coordinates are multiples of 2^-52, so no square underflows.
+            // The halves as whole numbers with a sign, moved by a half to lie evenly about 0.
+            let [x, y] = halves(self.word()).map(|half| (f64::from(half as u32 as i32) + 0.5) / (1u64 << 31) as f64);
+            let p = DVec2::new(x, y);
             let square = p.length_squared();
-            if square < 1.0 && square > 0.0 {
+            if square < 1.0 {
                 return (p, square);
             }
         }
@@ -129,26 +133,24 @@ impl Random {
 }
 
 /// The low and the high half.
-fn halves(word: u64) -> [u32; 2] {
-    [word as u32, (word >> 32) as u32]
+fn halves(word: u64) -> [u64; 2] {
+    [word & LOW, word >> 32]
 }
 
-/// Philox4x32-10 of `N` counters, each a column.
+/// Philox4x32-10 of `N` counters, each a column; the words are below 2^32.
 #[inline]
-fn philox<const N: usize>(mut counters: [[u32; N]; 4], mut key: [u32; 2]) -> [[u32; N]; 4] {
+fn philox<const N: usize>(counters: [[u64; N]; 4], mut key: [u64; 2]) -> [[u64; N]; 4] {
+    let [mut a, mut b, mut c, mut d] = counters;
     for _ in 0..10 {
-        let [a, b, c, d] = counters;
+        // Each of these is one instruction for several counters.
         for i in 0..N {
-            let first = u64::from(a[i]) * 0xD251_1F53;
-            let second = u64::from(c[i]) * 0xCD9E_8D57;
-            counters[0][i] = (second >> 32) as u32 ^ b[i] ^ key[0];
-            counters[1][i] = second as u32;
-            counters[2][i] = (first >> 32) as u32 ^ d[i] ^ key[1];
-            counters[3][i] = first as u32;
+            let (first, second) = ((a[i] & LOW) * 0xD251_1F53, (c[i] & LOW) * 0xCD9E_8D57);
+            (a[i], b[i]) = (second >> 32 ^ b[i] ^ key[0], second & LOW);
+            (c[i], d[i]) = (first >> 32 ^ d[i] ^ key[1], first & LOW);
         }
-        key = [key[0].wrapping_add(0x9E37_79B9), key[1].wrapping_add(0xBB67_AE85)];
+        key = [(key[0] + 0x9E37_79B9) & LOW, (key[1] + 0xBB67_AE85) & LOW];
     }
-    counters
+    [a, b, c, d]
 }
 
 #[cfg(test)]
@@ -156,7 +158,7 @@ mod tests {
     use super::*;
 
     fn philox_of(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
-        philox(counter.map(|word| [word]), key).map(|[word]| word)
+        philox(counter.map(|word| [u64::from(word)]), key.map(u64::from)).map(|[word]| u32::try_from(word).unwrap())
     }
 
     /// The known answers that are published with Random123 (`kat_vectors`).

@@ -11,6 +11,10 @@ pub(super) struct Gaussian {
 }
 
 impl Stride for Gaussian {
+    fn length(&self) -> f64 {
+        self.step
+    }
+
     #[inline]
     fn draw(&mut self, random: &mut Random) -> DVec2 {
         self.step * random.normal()

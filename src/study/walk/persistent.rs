@@ -45,6 +45,10 @@ impl Persistent {
 }
 
 impl Stride for Persistent {
+    fn length(&self) -> f64 {
+        self.step
+    }
+
     #[inline]
     fn draw(&mut self, random: &mut Random) -> DVec2 {
         self.draw_within(self.turn, random)

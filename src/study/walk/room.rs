@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::geometry::COORDINATE_MIN;
+use crate::geometry::{COORDINATE_MIN, higher, lower};
 use crate::scene::Model;
 
 pub(super) struct Room {
@@ -31,6 +31,48 @@ impl Room {
     #[inline]
     pub(super) fn is_open(&self, a: DVec2, b: DVec2) -> bool {
         self.holds(b) && self.model.is_clear(a, b)
+    }
+}
+
+/// A box around the free end that no wall meets, while there is one: every step within it is open, which is seen at once.
+pub(super) struct Clearing {
+    low: DVec2,
+    high: DVec2,
+    /// How many steps are looked at one by one before another box is tried.
+    pause: u32,
+}
+
+/// How far a clearing reaches on either side, in steps: further ones are seldom free, nearer ones soon left.
+const REACH: f64 = 8.0;
+
+/// How many steps are looked at one by one once a box was not free.
+const PAUSE: u32 = 16;
+
+impl Default for Clearing {
+    fn default() -> Self {
+        // A box that holds nothing.
+        Clearing { low: DVec2::INFINITY, high: DVec2::NEG_INFINITY, pause: 0 }
+    }
+}
+
+impl Clearing {
+    #[inline]
+    pub(super) fn holds(&self, p: DVec2) -> bool {
+        (p.x >= self.low.x) & (p.x <= self.high.x) & (p.y >= self.low.y) & (p.y <= self.high.y)
+    }
+
+    /// Another clearing, around `here`, since a step of about that length left the last one.
+    pub(super) fn move_to(&mut self, room: &Room, here: DVec2, step: f64) {
+        if self.pause > 0 {
+            self.pause -= 1;
+            return;
+        }
+        let (low, high) = (higher(here - REACH * step, room.low), lower(here + REACH * step, room.high));
+        if room.model.index().is_free(low, high) {
+            (self.low, self.high) = (low, high);
+        } else {
+            *self = Clearing { pause: PAUSE, ..Clearing::default() };
+        }
     }
 }
 

@@ -3,12 +3,15 @@
 use glam::DVec2;
 
 use super::at_walls;
-use super::room::{Room, point};
+use super::room::{Clearing, Room, point};
 use crate::study::AtWalls;
 use crate::study::random::Random;
 
 /// How the steps of one kind of walk are drawn.
 pub(super) trait Stride {
+    /// How long steps are, about.
+    fn length(&self) -> f64;
+
     /// The next step.
     fn draw(&mut self, random: &mut Random) -> DVec2;
 
@@ -37,14 +40,20 @@ impl Room {
     ) -> Vec<DVec2> {
         let mut points = Vec::with_capacity(steps as usize + 2);
         points.push(start);
-        let mut here = start;
+        let (mut here, mut clearing) = (start, Clearing::default());
         for _ in 0..steps {
             let next = point(here + stride.draw(random));
-            if self.is_open(here, next) {
+            if clearing.holds(next) {
                 stride.take();
                 here = next;
             } else {
-                here = at_walls::meet(self, at_walls, here, next, &mut stride, random);
+                if self.is_open(here, next) {
+                    stride.take();
+                    here = next;
+                } else {
+                    here = at_walls::meet(self, at_walls, here, next, &mut stride, random);
+                }
+                clearing.move_to(self, here, stride.length());
             }
             points.push(here);
         }

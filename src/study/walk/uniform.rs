@@ -10,6 +10,10 @@ pub(super) struct Uniform {
 }
 
 impl Stride for Uniform {
+    fn length(&self) -> f64 {
+        self.step
+    }
+
     #[inline]
     fn draw(&mut self, random: &mut Random) -> DVec2 {
         self.step * random.direction()
