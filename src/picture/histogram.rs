@@ -82,7 +82,7 @@ pub fn histogram(summary: &Summary, name: &str) -> String {
     }
     chart.axes(&mut svg, (&what, "scene units"), ("share of traces", "%"));
     legend(&mut svg, [left, 18.0], &known);
-    let note = format!("bars: {} % intervals", number(100.0 * summary.study.tallies.confidence, None));
+    let note = format!("error bars: {} % intervals", number(100.0 * summary.study.tallies.confidence, None));
     if bins.iter().any(|b| b.share.low.is_some()) {
         svg.text([right, 52.0], Align::End, &format!("fill=\"{MUTED}\""), &note);
     }

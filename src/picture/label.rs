@@ -53,7 +53,8 @@ pub(super) fn number(x: f64, resolution: Option<f64>) -> String {
         return "?".into();
     }
     let decimals = match resolution {
-        Some(r) if r > 0.0 && r.is_finite() => 1 - exponent(r),
+        // Two digits of what matters if the first of them is low, else one.
+        Some(r) if r > 0.0 && r.is_finite() => i32::from(r < 3.55 * power(exponent(r))) - exponent(r),
         _ if x == 0.0 => 0,
         _ => 3 - exponent(x),
     };
@@ -137,7 +138,7 @@ mod tests {
         let estimate_of = |value, half: f64| {
             estimate(&Estimate { value, error: Some(half / 2.0), low: Some(value - half), high: Some(value + half) })
         };
-        assert_eq!(estimate_of(12.345678, 0.41), "12.35 (11.94–12.76)");
+        assert_eq!(estimate_of(12.345678, 0.41), "12.3 (11.9–12.8)");
         assert_eq!(estimate_of(-1.5, 2.0), "−1.5 (−3.5 to 0.5)");
         assert_eq!(estimate_of(1.5e9, 2e7), "1.500×10⁹ (1.480×10⁹–1.520×10⁹)");
         assert_eq!(estimate_of(31_415.9, 120.0), "31\u{202F}416 (31\u{202F}296–31\u{202F}536)");

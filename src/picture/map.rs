@@ -6,7 +6,7 @@ use std::fmt::Write;
 use glam::DVec2;
 
 use super::chart::WIDTH;
-use super::colour::{INK, colour};
+use super::colour::{INK, MUTED, colour};
 use super::label::quantity;
 use super::plane::{Frame, View};
 use super::svg::{Align, Svg, px};
@@ -96,6 +96,9 @@ fn draw(
         svg.circle(frame.at(anchor), 5.0, &format!("fill=\"{INK}\" stroke=\"#fff\" stroke-width=\"1.5\""));
     }
     axes(&mut svg, &frame, &y_ticks);
+    let blank = if unit.is_empty() { "grey: no contact" } else { "grey: not seen there" };
+    let bottom = frame.top + bar_height.max(frame.height);
+    svg.text([WIDTH - 12.0, bottom + 36.0], Align::End, &format!("fill=\"{MUTED}\""), blank);
     bar(&mut svg, [frame.left + frame.width + 22.0, frame.top], bar_height, &shades, &quantity(what), unit);
     Some(svg.finish())
 }
@@ -125,16 +128,16 @@ fn cells(svg: &mut Svg, map: &Map, frame: &Frame, shades: &Shades, known: &[(u64
     }
 }
 
-/// Dark lines with a light edge, so that they are seen on light and on dark cells. Where walls are very many, they are
-/// fine lines without an edge: it would hide the cells and double the file.
+/// Dark lines with a light edge, so that they are seen on light and on dark cells; finer where walls are very many.
 fn walls(svg: &mut Svg, frame: &Frame, scene: &Scene) {
     let path = frame.walls(scene);
-    let many = path.len() > 40_000;
+    let (line, edge) = if path.len() > 40_000 { (".5", "1.2") } else { (".9", "2.2") };
     svg.open("g", "fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\"");
-    if !many {
-        svg.path(&path, "stroke=\"#fff\" stroke-opacity=\".75\" stroke-width=\"2.2\"");
+    // The edge is the same line again. Where that would be much to write, there is none.
+    if path.len() < 400_000 {
+        svg.path(&path, &format!("stroke=\"#fff\" stroke-opacity=\".75\" stroke-width=\"{edge}\""));
     }
-    svg.path(&path, &format!("class=\"walls\" stroke=\"{INK}\" stroke-width=\"{}\"", if many { ".5" } else { ".9" }));
+    svg.path(&path, &format!("class=\"walls\" stroke=\"{INK}\" stroke-width=\"{line}\""));
     svg.close("g");
 }
 

@@ -137,15 +137,18 @@ fn path(lines: &BTreeSet<[Point; 2]>) -> String {
     data
 }
 
-/// Follows lines from `start` until there are none, and takes them away. Points on straight runs are left out.
+/// Follows lines from `start` until there are none, straight on where it can, and takes them away. Points on straight
+/// runs are left out.
 fn walk(open: &mut BTreeMap<Point, BTreeSet<Point>>, start: Point) -> Option<Vec<Point>> {
     let mut stroke = vec![start];
     let mut at = start;
-    while let Some(next) = open.get_mut(&at).and_then(BTreeSet::pop_first) {
+    while let Some(ways) = open.get_mut(&at) {
+        let before = stroke.len().checked_sub(2).map(|i| stroke[i]);
+        let on = before.and_then(|before| ways.iter().copied().find(|&next| straight(before, at, next)));
+        let Some(next) = on.or(ways.first().copied()) else { break };
+        ways.remove(&next);
         open.entry(next).or_default().remove(&at);
-        if let [.., a, b] = stroke[..]
-            && straight(a, b, next)
-        {
+        if on.is_some() {
             stroke.pop();
         }
         stroke.push(next);

@@ -20,7 +20,7 @@ pub(super) enum Align {
 impl Svg {
     /// A document of that size on white ground, so that it can be read on any page; `title` is what a screen reader says.
     pub(super) fn new(width: f64, height: f64, title: &str) -> Self {
-        let (w, h) = (px(width), px(height));
+        let [w, h] = [width, height].map(|x| px(x.ceil()));
         let mut svg = Svg { out: String::new() };
         let _ = write!(
             svg.out,
@@ -28,7 +28,7 @@ impl Svg {
              font-family=\"sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>{}</title>\n",
             escape(title)
         );
-        svg.rect([0.0, 0.0], [width, height], "fill=\"#fff\"");
+        svg.rect([0.0, 0.0], [width.ceil(), height.ceil()], "fill=\"#fff\"");
         svg
     }
 
