@@ -34,6 +34,7 @@ pub mod example;
 pub mod geometry;
 pub mod gpu;
 pub mod output;
+pub mod picture;
 mod read_error;
 pub mod report;
 pub mod rope;

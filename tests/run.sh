@@ -45,3 +45,5 @@ say "documentation's examples"
 cargo test --release --doc --quiet
 say "tests"
 cargo test --release --lib --bins --tests
+say "a study's page in a browser"
+tests/page.sh

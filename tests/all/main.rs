@@ -5,6 +5,7 @@ mod built_in;
 mod cli;
 mod conservative;
 mod golden;
+mod pictures;
 mod random;
 mod scenes;
 mod shader;

@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 use anyhow::anyhow;
 use serde_json::json;
 use tautline::engine::{Engine, EngineError, Job};
+use tautline::picture;
 use tautline::report::Environment;
-use tautline::study::{EXAMPLE, Plan, RunError, Shard, Spent, State, Stopped, Study, run as go};
+use tautline::study::{EXAMPLE, Plan, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go};
 
 use super::folder::Folder;
 use super::show;
@@ -192,6 +193,9 @@ pub(super) fn conclude(
     let answer = serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?;
     folder.write("summary.json", pretty(&answer).as_bytes())?;
     folder.write("run.json", pretty(run).as_bytes())?;
+    if study.plan().outputs.pictures {
+        draw(folder, &summary, study, run)?;
+    }
     if as_json {
         print_json(&answer)?;
     } else {
@@ -205,6 +209,21 @@ pub(super) fn conclude(
         ))),
         _ => Ok(()),
     }
+}
+
+/// How wide the pictures are as PNG, in pixels: two for each of the SVG's units.
+const WIDTH: u32 = 1600;
+
+/// Writes the pictures and the page that shows them.
+fn draw(folder: &Folder, summary: &Summary, study: &Study, run: &serde_json::Value) -> Result<(), Failure> {
+    let pictures = picture::all(summary, study.models()[0].scene());
+    for (name, _, svg) in &pictures {
+        folder.write(&format!("{name}.svg"), svg.as_bytes())?;
+        let png = picture::png(svg, WIDTH).map_err(|e| Failure::internal(anyhow!("{name}.png: {e}")))?;
+        folder.write(&format!("{name}.png"), &png)?;
+    }
+    let shown: Vec<_> = pictures.into_iter().map(|(_, title, svg)| (title, svg)).collect();
+    folder.write("report.html", picture::page(summary, &shown, Some(run)).as_bytes())
 }
 
 /// Draws and evaluates a little, to say what all of it would cost.

@@ -1,0 +1,51 @@
+//! A study's answer to look at: pictures as SVG and PNG, and a page with all of them.
+//!
+//! Pictures are made of a [`Summary`] and the [`Scene`] it is about, and of nothing else: the same ones give the same
+//! bytes. Each stands on its own white ground, with names of what it shows and the unit. Colours stay apart for
+//! colour-blind eyes.
+
+mod chart;
+mod colour;
+mod histogram;
+mod label;
+mod map;
+mod page;
+mod plane;
+mod raster;
+mod ropes;
+mod survival;
+mod svg;
+mod tables;
+mod ticks;
+
+use crate::scene::Scene;
+use crate::study::Summary;
+
+pub use histogram::histogram;
+pub use map::{length_map, map};
+pub use page::page;
+pub use raster::{PictureError, png};
+pub use ropes::ropes;
+pub use survival::survival;
+
+/// All pictures that there are of a study: for each the name of its file without an extension, its title, and the SVG.
+pub fn all(summary: &Summary, scene: &Scene) -> Vec<(String, String, String)> {
+    let mut all = Vec::new();
+    for h in &summary.histograms {
+        let title = match h.name.as_str() {
+            "length" => "How long the ropes are at the end".to_string(),
+            "max_length" => "How long the ropes are at their longest".to_string(),
+            _ => format!("Histogram of the {}", label::quantity(&h.name)),
+        };
+        all.push((format!("histogram-{}", h.name.replace('_', "-")), title, histogram(summary, &h.name)));
+    }
+    let others = [
+        ("survival", "How many ropes stay short, step by step", survival(summary)),
+        ("map", "Where ropes touch walls", map(summary, scene)),
+        ("length-map", "How long the rope is, by where its free end is", length_map(summary, scene)),
+        ("ropes", "The commonest ropes at the end", ropes(summary, scene)),
+    ];
+    let others = others.into_iter().filter_map(|(stem, title, svg)| Some((stem.into(), title.into(), svg?)));
+    all.extend(others);
+    all
+}

@@ -1,0 +1,91 @@
+//! `report.html`: a study on one page.
+
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use super::label::{count, number};
+use super::svg::escape;
+use super::tables;
+use crate::study::{ScenePlan, Stopped, Summary};
+
+const STYLE: &str = include_str!("page.css");
+
+/// A page with everything in it: what was studied, the numbers, and the pictures, each with its title. `run` is what is
+/// known of the run itself: where and how long it ran. The page needs no other file, no network and no scripts.
+pub fn page(summary: &Summary, pictures: &[(String, String)], run: Option<&Value>) -> String {
+    let name = escape(&scene(&summary.study.scene));
+    let mut out = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n<title>Study of {name}</title>\n\
+         <style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>Study of {name}</h1>\n"
+    );
+    out.push_str(&facts(summary));
+    let confidence = number(100.0 * summary.study.tallies.confidence, None);
+    let _ = writeln!(
+        out,
+        "<p class=\"note\">Lengths are in the scene’s unit. Intervals, in parentheses, hold the true value in {confidence} % \
+         of all studies.</p>"
+    );
+    let mut section = |title: &str, there: bool, body: String| {
+        if there {
+            let _ = write!(out, "<section>\n<h2>{title}</h2>\n{body}</section>\n");
+        }
+    };
+    section("Numbers", !summary.scalars.is_empty(), tables::scalars(summary));
+    section("Pictures", !pictures.is_empty(), figures(pictures));
+    section("Obstacles that ropes are wound about", !summary.obstacles.is_empty(), tables::obstacles(summary));
+    section("Commonest ropes at the end", !summary.ropes.is_empty(), tables::ropes(summary));
+    section("Wall ends touched the longest", !summary.contacts.is_empty(), tables::contacts(summary));
+    let plan = serde_json::to_value(&summary.study).unwrap_or_default();
+    section("Parameters", true, tables::values(&plan));
+    section("Run", run.is_some(), run.map(tables::values).unwrap_or_default());
+    out.push_str("</main>\n</body>\n</html>\n");
+    out
+}
+
+/// What was computed.
+fn facts(summary: &Summary) -> String {
+    let stopped = match summary.stopped {
+        Stopped::Complete => "all traces are done",
+        Stopped::RelativeError => "the mean is as certain as was asked for",
+        Stopped::Seconds => "the time was over",
+        Stopped::Unfinished => "not finished",
+    };
+    let facts = [
+        ("traces", count(summary.traces)),
+        ("steps", count(summary.steps)),
+        ("wraps and unwraps", count(summary.events)),
+        ("blocks", count(summary.blocks)),
+        ("ended", stopped.into()),
+        ("identity", summary.identity.clone()),
+    ];
+    let mut out = String::from("<dl>\n");
+    for (name, value) in facts {
+        let _ = writeln!(out, "<div><dt>{name}</dt><dd>{}</dd></div>", escape(&value));
+    }
+    out.push_str("</dl>\n");
+    out
+}
+
+/// The scene's name.
+fn scene(plan: &ScenePlan) -> String {
+    let file = plan.file.as_ref().map(|f| f.display().to_string());
+    plan.built_in.clone().or(file).unwrap_or_else(|| "a scene".into())
+}
+
+/// The pictures, each on a card that is light in the dark too: their colours are made for white.
+fn figures(pictures: &[(String, String)]) -> String {
+    let mut out = String::new();
+    for (title, svg) in pictures {
+        // Within HTML an SVG needs no name space.
+        let svg = svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+        let _ = write!(
+            out,
+            "<figure>\n<figcaption>{}</figcaption>\n<div class=\"card\" tabindex=\"0\">\n{svg}</div>\n</figure>\n",
+            escape(title)
+        );
+    }
+    out
+}

@@ -1,0 +1,149 @@
+//! The tables of a study's page.
+
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use super::label::{count, interval, number, percent, quantity, resolution};
+use super::svg::escape;
+use crate::study::{Estimate, Summary};
+
+/// How many rows the tables of obstacles and of wall ends have at the most.
+const ROWS: usize = 20;
+
+/// A table: its head, and its rows cell by cell. Cells are text; what a row begins with is its head.
+fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let mut out = String::from("<div class=\"wide\"><table>\n<thead><tr>");
+    for name in head {
+        let _ = write!(out, "<th scope=\"col\">{}</th>", escape(name));
+    }
+    out.push_str("</tr></thead>\n<tbody>\n");
+    for row in rows {
+        out.push_str("<tr>");
+        for (i, cell) in row.iter().enumerate() {
+            let (open, close) = if i == 0 { ("<th scope=\"row\">", "</th>") } else { ("<td>", "</td>") };
+            let _ = write!(out, "{open}{}{close}", escape(cell));
+        }
+        out.push_str("</tr>\n");
+    }
+    out.push_str("</tbody></table></div>\n");
+    out
+}
+
+/// The numbers of which there is one a trace.
+pub(super) fn scalars(summary: &Summary) -> String {
+    let mut shares: Vec<f64> = summary.scalars.iter().flat_map(|s| &s.quantiles).map(|q| q.share).collect();
+    shares.sort_by(f64::total_cmp);
+    shares.dedup();
+    let names =
+        shares.iter().map(|&s| if s == 0.5 { "median".into() } else { format!("{} %", number(100.0 * s, None)) });
+    let names: Vec<String> = names.collect();
+    let mut head = vec!["", "mean", "standard error", "interval", "deviation", "least"];
+    head.extend(names.iter().map(String::as_str));
+    head.push("greatest");
+    let rows = summary.scalars.iter().map(|s| {
+        let plain = |x: f64| number(x, None);
+        let optional = |x: Option<String>| x.unwrap_or_else(|| "–".into());
+        let mut row = vec![
+            quantity(&s.name),
+            number(s.mean.value, resolution(&s.mean)),
+            optional(s.mean.error.map(|e| number(e, Some(e)))),
+            optional(interval(&s.mean)),
+            optional(s.deviation.map(plain)),
+            plain(s.min),
+        ];
+        row.extend(
+            shares
+                .iter()
+                .map(|&share| optional(s.quantiles.iter().find(|q| q.share == share).map(|q| plain(q.value.value)))),
+        );
+        row.push(plain(s.max));
+        row
+    });
+    table(&head, rows)
+}
+
+/// What ropes were wound about.
+pub(super) fn obstacles(summary: &Summary) -> String {
+    let rows = summary.obstacles.iter().take(ROWS).map(|o| {
+        vec![
+            o.vertex.to_string(),
+            point(o.at),
+            count(o.walls.into()),
+            percent(&o.wound),
+            percent(&o.left),
+            percent(&o.right),
+            plain(&o.mean),
+        ]
+    });
+    let head = ["wall end", "at", "walls", "wound", "counter-clockwise", "clockwise", "mean times round"];
+    table(&head, rows) + &left_out(summary.obstacles.len(), "obstacles")
+}
+
+/// The commonest ropes, turn by turn.
+pub(super) fn ropes(summary: &Summary) -> String {
+    let rows = summary.ropes.iter().enumerate().map(|(i, r)| {
+        let turns = r.wraps.iter().zip(&r.sides).map(|(&at, side)| format!("{} {side}", point(at)));
+        let turns: Vec<String> = turns.collect();
+        let counted =
+            if r.at_most > r.count { format!("{} to {}", count(r.count), count(r.at_most)) } else { count(r.count) };
+        let way = if turns.is_empty() { "straight".into() } else { turns.join(" → ") };
+        vec![(i + 1).to_string(), percent(&r.share), counted, point(r.anchor), way]
+    });
+    table(&["", "share", "traces", "anchor", "turns at"], rows)
+}
+
+/// The wall ends that ropes touch the longest.
+pub(super) fn contacts(summary: &Summary) -> String {
+    let rows = summary.contacts.iter().take(ROWS);
+    let rows = rows.map(|c| vec![c.vertex.to_string(), point(c.at), percent(&c.share), plain(&c.wraps)]);
+    table(&["wall end", "at", "share of steps", "wraps a trace"], rows) + &left_out(summary.contacts.len(), "wall ends")
+}
+
+/// All that a JSON object holds, one value a row.
+pub(super) fn values(value: &Value) -> String {
+    let mut rows = Vec::new();
+    flatten(value, "", &mut rows);
+    table(&["", "value"], rows)
+}
+
+fn flatten(value: &Value, name: &str, rows: &mut Vec<Vec<String>>) {
+    let text = match value {
+        Value::Object(fields) => {
+            for (key, value) in fields {
+                let key = key.replace('_', " ");
+                let name = if name.is_empty() { key } else { format!("{name}: {key}") };
+                flatten(value, &name, rows);
+            }
+            return;
+        }
+        Value::Null => "–".into(),
+        Value::Bool(yes) => if *yes { "yes" } else { "no" }.into(),
+        Value::String(text) => text.clone(),
+        Value::Array(list) if list.is_empty() => "none".into(),
+        Value::Array(list) if list.iter().all(|x| x.is_number() || x.is_string()) => {
+            let text = |x: &Value| x.as_str().map_or_else(|| x.to_string(), str::to_owned);
+            list.iter().map(text).collect::<Vec<_>>().join(", ")
+        }
+        other => other.to_string(),
+    };
+    rows.push(vec![name.into(), text]);
+}
+
+fn point([x, y]: [f64; 2]) -> String {
+    format!("({}, {})", number(x, None), number(y, None))
+}
+
+/// A number and its interval.
+fn plain(e: &Estimate) -> String {
+    super::label::estimate(e)
+}
+
+fn left_out(all: usize, what: &str) -> String {
+    match all.checked_sub(ROWS) {
+        None | Some(0) => String::new(),
+        Some(more) => {
+            format!("<p class=\"note\">{} more {what} are in <code>summary.json</code>.</p>\n", count(more as u64))
+        }
+    }
+}

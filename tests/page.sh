@@ -1,0 +1,96 @@
+#!/usr/bin/env bash
+# Opens a study's page in a browser, as wide as on a desk and as on a phone: are all pictures there, does everything fit,
+# and is there nothing that it loads or complains of? Installs Chromium where it is missing.
+# With a folder as its argument, the page and what the browser showed are left there.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+browser() {
+    command -v chromium || command -v chromium-browser || command -v google-chrome
+}
+
+if ! browser >/dev/null; then
+    if ! command -v apt-get >/dev/null; then
+        echo "The page's test needs Chromium. Install it and run this again." >&2
+        exit 1
+    fi
+    echo "installing Chromium"
+    root=()
+    [ "$(id -u)" -eq 0 ] || root=(sudo)
+    "${root[@]}" apt-get update -qq
+    "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq chromium >/dev/null
+fi
+chromium="$(browser)"
+
+scratch="$(mktemp -d)"
+trap 'rm -rf "$scratch"' EXIT
+folder="${1:-$scratch}"
+mkdir -p "$folder"
+folder="$(cd "$folder" && pwd)"
+
+TAUTLINE_TEST_PAGE="$folder/report.html" \
+    cargo test --release --quiet --test all pictures::the_page_has_everything_and_needs_nothing >"$scratch/test.log" 2>&1 ||
+    { cat "$scratch/test.log" >&2; exit 1; }
+
+# The page itself has no scripts. A copy of it gets one, which measures and leaves what it found in the document.
+cat >"$scratch/measure.html" <<'HTML'
+<script>
+const faults = [];
+addEventListener('error', event => faults.push('error: ' + (event.message || event.target.outerHTML)), true);
+addEventListener('load', () => {
+    const figures = [...document.querySelectorAll('figure')];
+    for (const figure of figures) {
+        const name = figure.querySelector('figcaption').textContent;
+        const svg = figure.querySelector('svg');
+        const box = svg.getBoundingClientRect();
+        if (box.width < 200 || box.height < 100) faults.push(`${name}: ${box.width} x ${box.height} pixels`);
+        const inside = r => r.left > box.left - 1 && r.right < box.right + 1 && r.top > box.top - 1 && r.bottom < box.bottom + 1;
+        for (const text of svg.querySelectorAll('text')) {
+            const r = text.getBoundingClientRect();
+            if (r.width === 0) faults.push(`${name}: nothing is seen of "${text.textContent}"`);
+            if (!inside(r)) faults.push(`${name}: "${text.textContent}" leaves the picture`);
+            if (parseFloat(getComputedStyle(text).fontSize) * box.width / svg.viewBox.baseVal.width < 7)
+                faults.push(`${name}: "${text.textContent}" is too small`);
+        }
+        if (svg.querySelectorAll('path, rect, circle').length < 3) faults.push(`${name}: nothing is drawn`);
+    }
+    const wide = document.documentElement.scrollWidth;
+    if (wide > innerWidth) faults.push(`the page is ${wide} pixels wide, the window ${innerWidth}`);
+    for (const entry of performance.getEntriesByType('resource')) faults.push('it loads ' + entry.name);
+    const result = document.createElement('pre');
+    result.id = 'measured';
+    result.hidden = true;
+    result.textContent = `figures: ${figures.length}, window: ${innerWidth}, faults: ${faults.length}\n${faults.join('\n')}`;
+    document.body.append(result);
+});
+</script>
+HTML
+awk -v script="$scratch/measure.html" '{ print } /^<head>$/ { while ((getline line < script) > 0) print line }' \
+    "$folder/report.html" >"$scratch/measured.html"
+figures="$(grep --count '^<figure>$' "$folder/report.html")"
+
+# One window: $1 its name, $2 and $3 its width and height, then further flags.
+look() {
+    local name="$1" width="$2" height="$3"
+    shift 3
+    local run=(timeout 120 "$chromium" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run
+        --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars
+        --enable-logging=stderr "--user-data-dir=$scratch/profile-$name" "--window-size=$width,$height" "$@")
+    "${run[@]}" --dump-dom "file://$scratch/measured.html" >"$scratch/$name.html" 2>"$scratch/$name.log" ||
+        { cat "$scratch/$name.log" >&2; echo "$name: the browser failed" >&2; exit 1; }
+    local measured
+    measured="$(sed -n '/<pre id="measured"/,/<\/pre>/p' "$scratch/$name.html" | sed 's/<[^>]*>//g')"
+    echo "$name: $measured"
+    if [[ "$measured" != "figures: $figures, window: $width, faults: 0"* ]] || grep CONSOLE "$scratch/$name.log" >&2; then
+        echo "$name: the page is not as it should be" >&2
+        exit 1
+    fi
+    "${run[@]}" "--screenshot=$folder/$name.png" "file://$folder/report.html" >"$scratch/$name.log" 2>&1 ||
+        { cat "$scratch/$name.log" >&2; echo "$name: the browser failed" >&2; exit 1; }
+    # An empty page is a small file.
+    [ "$(wc -c <"$folder/$name.png")" -gt 20000 ] || { echo "$name: the screenshot is empty" >&2; exit 1; }
+}
+
+[ "$figures" -eq 6 ] || { echo "$figures pictures are in the page, not 6" >&2; exit 1; }
+look desk 1280 6200
+look phone 500 7000
