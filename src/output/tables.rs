@@ -9,6 +9,7 @@ use parquet::arrow::ArrowWriter;
 use parquet::arrow::arrow_writer::ArrowWriterOptions;
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 
 use super::{WholeFile, WriteError};
@@ -42,6 +43,11 @@ impl<C: Columns> Table<C> {
         let options = ArrowWriterOptions::new().with_properties(properties).with_skip_arrow_metadata(true);
         let writer = ArrowWriter::try_new_with_options(file, schema.clone(), options).map_err(|e| error(path, e))?;
         Ok(Table { columns: C::default(), schema, writer, path: path.to_owned() })
+    }
+
+    /// Notes something about the file in its footer.
+    pub(super) fn note(&mut self, key: &str, value: &str) {
+        self.writer.append_key_value_metadata(KeyValue::new(key.to_owned(), value.to_owned()));
     }
 
     pub(super) fn flush_if_full(&mut self) -> Result<(), WriteError> {

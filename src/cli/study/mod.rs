@@ -2,6 +2,7 @@
 
 mod folder;
 mod merge;
+mod parts;
 mod replay;
 mod run;
 mod show;

@@ -12,6 +12,7 @@ use tautline::report::Environment;
 use tautline::study::{EXAMPLE, Plan, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go};
 
 use super::folder::Folder;
+use super::parts::Parts;
 use super::show;
 use crate::cli::engine::EngineArgs;
 use crate::cli::failure::Failure;
@@ -124,16 +125,27 @@ fn proceed(
     let steps = study.plan().walk.steps().map_or(0, |steps| traces * u64::from(steps));
     let progress = Progress::new(if steps > 0 { traces } else { 0 });
     progress.begin(traces, steps);
-    let (start, mut saved) = (Instant::now(), Instant::now());
+    let mut parts = match study.plan().outputs.traces {
+        true => Some(Parts::open(&folder.path().join("traces"), state.done(), provenance(study, name, &on))?),
+        false => None,
+    };
+    let (start, mut saved, mut written) = (Instant::now(), Instant::now(), state.done());
     let outcome = with_progress(&progress, &job, || {
-        go(study, &mut engines, &mut state, &job, |state, _, _| {
+        go(study, &mut engines, &mut state, &job, |state, records, added| {
+            if let Some(parts) = &mut parts {
+                parts.write(written, &records[..added])?;
+                written = state.done();
+            }
             if saved.elapsed() >= CHECKPOINT {
+                // First the rows: those that the state does not know of yet are written again.
+                parts.as_mut().map_or(Ok(()), Parts::close)?;
                 folder.save(state)?;
                 saved = Instant::now();
             }
             Ok::<(), Failure>(())
         })
     });
+    parts.as_mut().map_or(Ok(()), Parts::close)?;
     folder.save(&state)?;
     let spent = match outcome {
         Ok(spent) => spent,
@@ -162,6 +174,17 @@ fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn 
         on = place;
     }
     Ok((engines, on))
+}
+
+/// What each file of rows says of where it comes from.
+fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static str, String)> {
+    vec![
+        ("tautline.version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("tautline.study", study.identity().to_owned()),
+        ("tautline.seed", study.plan().run.seed.to_string()),
+        ("tautline.engine", engine.to_owned()),
+        ("tautline.on", on.to_owned()),
+    ]
 }
 
 /// What the run cost and where it ran.

@@ -154,6 +154,49 @@ fn a_study_ends_when_it_is_certain_enough() {
     folder.refused(2, "study run u.toml --out d --shard 0/2", &["--shard"]);
 }
 
+/// The rows of the folder `traces`, which stand in its files in the order of their names.
+fn rows(folder: &Folder, run: &str) -> Vec<(u64, f64)> {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::RowAccessor;
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder.path(run).join("traces")).unwrap().map(|e| e.unwrap().path()).collect();
+    files.sort();
+    let mut rows = Vec::new();
+    for file in files {
+        let reader = SerializedFileReader::new(std::fs::File::open(file).unwrap()).unwrap();
+        let notes = reader.metadata().file_metadata().key_value_metadata().unwrap();
+        let seed = notes.iter().find(|note| note.key == "tautline.seed").unwrap();
+        assert_eq!(seed.value.as_deref(), Some("1"));
+        for row in reader.get_row_iter(None).unwrap() {
+            let row = row.unwrap();
+            rows.push((row.get_ulong(0).unwrap(), row.get_double(3).unwrap()));
+        }
+    }
+    rows
+}
+
+#[test]
+fn rows_are_whole_after_a_stop() {
+    let folder = study();
+    folder.write("t.toml", format!("{}[outputs]\ntraces = true\npictures = false\n", STUDY.replace("5350", "40000")));
+    folder.done("study run t.toml --out a");
+    let whole = rows(&folder, "a");
+    assert!(whole.iter().map(|row| row.0).eq(0..40_000));
+    let mut child =
+        folder.command("study run t.toml --out b").stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+    while !folder.path("b/traces").exists() {
+        sleep(Duration::from_millis(5));
+    }
+    sleep(Duration::from_millis(100));
+    std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    child.wait().unwrap();
+    folder.done("study resume b");
+    assert!(rows(&folder, "b") == whole);
+    let mean = whole.iter().map(|row| row.1).sum::<f64>() / 40_000.0;
+    let told = json(&folder, "a/summary.json")["scalars"][0]["mean"]["value"].as_f64().unwrap();
+    assert!((mean - told).abs() < 1e-9 * mean);
+}
+
 #[test]
 fn one_trace_is_replayed() {
     let folder = study();
