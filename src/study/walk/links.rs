@@ -78,7 +78,7 @@ impl Links {
     }
 
     /// The wall ends to which a path can go straight from the anchor, with the sides there.
-    pub(super) fn from_anchor(&self, scratch: &mut Scratch) -> Vec<(u32, Sides)> {
+    pub(super) fn after_anchor(&self, scratch: &mut Scratch) -> Vec<(u32, Sides)> {
         let mut seen = Vec::new();
         self.visibility.look(self.model.vertices().len() as u32, scratch, &mut seen);
         let at = self.model.anchor();
@@ -86,12 +86,12 @@ impl Links {
     }
 
     /// The wall ends to which a path can go straight from a place, with the sides there.
-    pub(super) fn from_place(&self, place: Place, scratch: &mut Scratch) -> Vec<(u32, Sides)> {
+    pub(super) fn after_place(&self, place: Place, scratch: &mut Scratch) -> Vec<(u32, Sides)> {
         self.look_from(place, scratch, false)
     }
 
     /// The wall ends from which a path can go straight to a place, with the sides there.
-    pub(super) fn to_place(&self, place: Place, scratch: &mut Scratch) -> Vec<(u32, Sides)> {
+    pub(super) fn before_place(&self, place: Place, scratch: &mut Scratch) -> Vec<(u32, Sides)> {
         self.look_from(place, scratch, true)
     }
 

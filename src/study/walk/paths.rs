@@ -54,10 +54,10 @@ impl Paths {
         let goal = 2 * vertices.len() as u32;
         search.start(vertices.len());
         let first = match from {
-            From::Anchor => self.links.from_anchor(&mut search.scratch),
-            From::Place(place) => self.links.from_place(place, &mut search.scratch),
+            From::Anchor => self.links.after_anchor(&mut search.scratch),
+            From::Place(place) => self.links.after_place(place, &mut search.scratch),
         };
-        let last = self.links.to_place(to, &mut search.scratch);
+        let last = self.links.before_place(to, &mut search.scratch);
         for &(v, sides) in &last {
             search.leaves[v as usize] = sides;
         }
