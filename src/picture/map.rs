@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use super::chart::WIDTH;
 use super::colour::{INK, MUTED, colour};
-use super::label::quantity;
+use super::label::width;
 use super::plane::{Frame, View};
 use super::svg::{Align, Svg, px};
 use super::ticks::Ticks;
@@ -98,8 +98,9 @@ fn draw(
     axes(&mut svg, &frame, &y_ticks);
     let blank = if unit.is_empty() { "grey: no contact" } else { "grey: not seen there" };
     let bottom = frame.top + bar_height.max(frame.height);
-    svg.text([WIDTH - 12.0, bottom + 36.0], Align::End, &format!("fill=\"{MUTED}\""), blank);
-    bar(&mut svg, [frame.left + frame.width + 22.0, frame.top], bar_height, &shades, &quantity(what), unit);
+    let x = frame.left + frame.width + 22.0;
+    svg.text([beside(x, blank, 12.0), bottom + 36.0], Align::Start, &format!("fill=\"{MUTED}\""), blank);
+    bar(&mut svg, [x, frame.top], bar_height, &shades, what, unit);
     Some(svg.finish())
 }
 
@@ -167,7 +168,8 @@ fn axes(svg: &mut Svg, frame: &Frame, y_ticks: &Ticks) {
         svg.line([frame.left - 4.0, y], [frame.left, y], stroke);
         svg.text([frame.left - 7.0, y + 4.0], Align::End, "", name);
     }
-    let middle = (frame.left + right) / 2.0;
+    let title = format!("x ({})", x_ticks.unit("scene units"));
+    let middle = ((frame.left + right) / 2.0).max(8.0 + width(&title, 13.0) / 2.0);
     svg.text(
         [middle, bottom + 38.0],
         Align::Middle,
@@ -179,10 +181,10 @@ fn axes(svg: &mut Svg, frame: &Frame, y_ticks: &Ticks) {
 
 /// The colour bar.
 fn bar(svg: &mut Svg, [x, top]: [f64; 2], height: f64, shades: &Shades, what: &str, unit: &str) {
-    let step = height / SHADES as f64;
     for i in 0..SHADES {
-        let y = top + height - (i + 1) as f64 * step;
-        svg.rect([x, y], [16.0, step], &format!("fill=\"{}\" shape-rendering=\"crispEdges\"", shade(i)));
+        // Each lies on the lighter ones and reaches to the top, so that no seam shows between two.
+        let rest = height * (SHADES - i) as f64 / SHADES as f64;
+        svg.rect([x, top], [16.0, rest], &format!("fill=\"{}\" shape-rendering=\"crispEdges\"", shade(i)));
     }
     let most = (height / 50.0).clamp(2.0, 8.0) as usize;
     let ticks = if shades.logarithmic {
@@ -199,5 +201,10 @@ fn bar(svg: &mut Svg, [x, top]: [f64; 2], height: f64, shades: &Shades, what: &s
         unit if unit.is_empty() => what.to_string(),
         unit => format!("{what} ({})", unit.trim_end()),
     };
-    svg.text([WIDTH - 12.0, 18.0], Align::End, "font-size=\"13\"", &what);
+    svg.text([beside(x, &what, 13.0), 18.0], Align::Start, "font-size=\"13\"", &what);
+}
+
+/// Where words at the colour bar start: at the bar, but neither beyond the right edge nor on the axes' titles.
+fn beside(x: f64, words: &str, size: f64) -> f64 {
+    x.min(WIDTH - 12.0 - width(words, size)).max(190.0)
 }

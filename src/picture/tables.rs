@@ -11,9 +11,10 @@ use crate::study::{Estimate, Summary};
 /// How many rows the tables of obstacles and of wall ends have at the most.
 const ROWS: usize = 20;
 
-/// A table: its head, and its rows cell by cell. Cells are text; what a row begins with is its head.
-fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let mut out = String::from("<div class=\"wide\"><table>\n<thead><tr>");
+/// A table: its class, its head, and its rows cell by cell. Cells are text; what a row begins with is its head. In a table
+/// of `words`, the last column may be long.
+fn table(class: &str, head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let mut out = format!("<div class=\"wide\"><table class=\"{class}\">\n<thead><tr>");
     for name in head {
         let _ = write!(out, "<th scope=\"col\">{}</th>", escape(name));
     }
@@ -60,7 +61,7 @@ pub(super) fn scalars(summary: &Summary) -> String {
         row.push(plain(s.max));
         row
     });
-    table(&head, rows)
+    table("numbers", &head, rows)
 }
 
 /// What ropes were wound about.
@@ -77,7 +78,7 @@ pub(super) fn obstacles(summary: &Summary) -> String {
         ]
     });
     let head = ["wall end", "at", "walls", "wound", "counter-clockwise", "clockwise", "mean times round"];
-    table(&head, rows) + &left_out(summary.obstacles.len(), "obstacles")
+    table("numbers", &head, rows) + &left_out(summary.obstacles.len(), "obstacles")
 }
 
 /// The commonest ropes, turn by turn.
@@ -90,21 +91,22 @@ pub(super) fn ropes(summary: &Summary) -> String {
         let way = if turns.is_empty() { "straight".into() } else { turns.join(" → ") };
         vec![(i + 1).to_string(), percent(&r.share), counted, point(r.anchor), way]
     });
-    table(&["", "share", "traces", "anchor", "turns at"], rows)
+    table("words", &["", "share", "traces", "anchor", "turns at"], rows)
 }
 
 /// The wall ends that ropes touch the longest.
 pub(super) fn contacts(summary: &Summary) -> String {
     let rows = summary.contacts.iter().take(ROWS);
     let rows = rows.map(|c| vec![c.vertex.to_string(), point(c.at), percent(&c.share), plain(&c.wraps)]);
-    table(&["wall end", "at", "share of steps", "wraps a trace"], rows) + &left_out(summary.contacts.len(), "wall ends")
+    table("numbers", &["wall end", "at", "share of steps", "wraps a trace"], rows)
+        + &left_out(summary.contacts.len(), "wall ends")
 }
 
 /// All that a JSON object holds, one value a row.
 pub(super) fn values(value: &Value) -> String {
     let mut rows = Vec::new();
     flatten(value, "", &mut rows);
-    table(&["", "value"], rows)
+    table("words", &["", "value"], rows)
 }
 
 fn flatten(value: &Value, name: &str, rows: &mut Vec<Vec<String>>) {
