@@ -109,9 +109,9 @@ impl Counts {
             for (moments, value) in moments.iter_mut().zip(lengths.into_iter().chain(values.map(|v| v as f64))) {
                 moments.add(value);
             }
-            for i in 0..2 {
-                *counts.bins[i].entry((lengths[i] / setting.bin) as u64).or_default() += 1;
-                counts.sketches[i].add(lengths[i]);
+            for ((bins, sketch), length) in counts.bins.iter_mut().zip(&mut counts.sketches).zip(lengths) {
+                *bins.entry((length / setting.bin) as u64).or_default() += 1;
+                sketch.add(length);
             }
             for (counts, value) in counts.values.iter_mut().zip(values) {
                 *counts.entry(value).or_default() += 1;

@@ -92,7 +92,8 @@ fn a_study_killed_at_any_moment_goes_on_and_ends_the_same() {
         if by_hand {
             std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
             let code = child.wait().unwrap().code();
-            assert!(code == Some(4) || code == Some(0), "{code:?}");
+            // Its first state is there once it listens. Later it may not have got so far, or be done.
+            assert!(code == Some(4) || (round > 0 && [None, Some(0)].contains(&code)), "{code:?}");
         } else {
             child.kill().unwrap();
             child.wait().unwrap();
