@@ -144,7 +144,7 @@ fn a_study_ends_when_it_is_certain_enough() {
     let summary = json(&folder, "a/summary.json");
     assert_eq!(summary["stopped"], "relative_error");
     let traces = summary["traces"].as_u64().unwrap();
-    assert!(traces < 5350 && traces % 250 == 0, "{traces}");
+    assert!(traces < 5350 && traces.is_multiple_of(250), "{traces}");
     let mean = &summary["scalars"][1]["mean"];
     let [value, high] = ["value", "high"].map(|k| mean[k].as_f64().unwrap());
     assert!(high - value <= 0.02 * value);
