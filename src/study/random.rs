@@ -85,21 +85,6 @@ impl Random {
         (2.0 * self.unit() - 1.0) * size
     }
 
-    /// A whole number below `n`, all as likely (Lemire, "Fast random integer generation in an interval", ACM Trans. Model.
-    /// Comput. Simul. 29, 2019). Panics if `n` is 0.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the tallies of studies come next"))]
-    pub(in crate::study) fn below(&mut self, n: u64) -> u64 {
-        assert!(n > 0, "no whole number is below 0");
-        // Of the 2^64 words, so many are one too many for some of the numbers.
-        let surplus = n.wrapping_neg() % n;
-        loop {
-            let product = u128::from(self.word()) * u128::from(n);
-            if product as u64 >= surplus {
-                return (product >> 64) as u64;
-            }
-        }
-    }
-
     /// A direction, as a vector one long. Made without angles: sines and cosines are not the same on every machine.
     #[inline]
     pub(in crate::study) fn direction(&mut self) -> DVec2 {
@@ -198,19 +183,6 @@ mod tests {
         purposes.sort_unstable();
         purposes.dedup();
         assert_eq!(purposes.len(), 4);
-    }
-
-    #[test]
-    fn numbers_below_a_bound_are_all_as_likely() {
-        let mut random = Random::new(1, Purpose::Walk, 0);
-        let mut counts = [0u32; 7];
-        for _ in 0..70_000 {
-            counts[random.below(7) as usize] += 1;
-        }
-        // Five standard errors of a count of mean 10,000.
-        assert!(counts.iter().all(|&c| (f64::from(c) - 10_000.0).abs() < 5.0 * 93.0), "{counts:?}");
-        assert_eq!(random.below(1), 0);
-        assert!((0..100).all(|_| random.below(u64::MAX) < u64::MAX));
     }
 
     #[test]

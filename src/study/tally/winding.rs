@@ -127,7 +127,8 @@ mod tests {
         let (west, east) = ((p(0.0, 0.0), Side::Left), (p(1.0, 0.0), Side::Left));
         let top = (p(1.0, 1.0), Side::Left);
         assert_eq!(turns(&[east, top], p(-3.0, 0.9)), []);
-        assert_eq!(turns(&[east, top, west], p(-3.0, -1.1)), []);
+        assert_eq!(turns(&[east, top, west], p(-3.0, -0.9)), []);
+        assert_eq!(turns(&[east, top, west], p(-3.0, -1.1)), [(0, 1)]);
         assert_eq!(turns(&[east, top, west], p(2.0, -1.1)), [(0, 1)]);
         assert_eq!(turns(&[east, top, west, east, top], p(2.0, 9.0)), [(0, 1)]);
         assert_eq!(turns(&[east, top, west, east, top, west, east], p(2.0, 0.5)), [(0, 2)]);
