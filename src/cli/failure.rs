@@ -7,6 +7,7 @@ use tautline::ReadError;
 use tautline::engine::EngineError;
 use tautline::gpu::GpuError;
 use tautline::output::WriteError;
+use tautline::picture::DrawError;
 use tautline::scene::AnchorError;
 use tautline::study::{PlanError, StateError};
 
@@ -74,6 +75,12 @@ impl From<StateError> for Failure {
 
 impl From<AnchorError> for Failure {
     fn from(error: AnchorError) -> Self {
+        Failure::input(error.into())
+    }
+}
+
+impl From<DrawError> for Failure {
+    fn from(error: DrawError) -> Self {
         Failure::input(error.into())
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use glam::DVec2;
 use tautline::example::{Walker, floor_plan};
-use tautline::scene::{AnchorError, Model, read_scene};
+use tautline::scene::{AnchorError, Model, Scene, read_scene};
 use tautline::trace::TraceReader;
 
 use super::batches::Source;
@@ -48,10 +48,19 @@ impl InputArgs {
     }
 
     pub(crate) fn model(&self) -> Result<Model, Failure> {
-        let scene = match &self.scene {
-            Some(path) => read_scene(path)?,
-            None => floor_plan(),
-        };
+        self.tie(self.walls()?)
+    }
+
+    /// The walls, and the anchor that the file may mark.
+    pub(crate) fn walls(&self) -> Result<Scene, Failure> {
+        match &self.scene {
+            Some(path) => Ok(read_scene(path)?),
+            None => Ok(floor_plan()),
+        }
+    }
+
+    /// Ties the rope in `scene`.
+    pub(crate) fn tie(&self, scene: Scene) -> Result<Model, Failure> {
         Model::new(scene, self.anchor).map_err(|error| match error {
             AnchorError::Missing => Failure::input(anyhow!(
                 "{}: no anchor; give --anchor X,Y{}",

@@ -4,12 +4,14 @@ mod adapters;
 mod batches;
 mod bench;
 mod check;
+mod draw;
 mod engine;
 pub(crate) mod environment;
 mod eval;
 mod failure;
 mod input;
 mod interrupt;
+mod look;
 mod output;
 mod progress;
 mod spread;
@@ -46,6 +48,8 @@ enum Command {
     Study(study::Args),
     /// Check a scene, and traces in it, without evaluating ropes
     Check(check::Args),
+    /// Draw traces and their ropes: at one moment, event by event, or moving
+    Draw(draw::Args),
     /// Measure the throughput of all engines, side by side on the same walks
     Bench(bench::Args),
     /// List the GPUs that this machine offers
@@ -61,6 +65,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Eval(args) => eval::run(&args),
         Command::Study(args) => study::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Draw(args) => draw::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Adapters(args) => adapters::run(&args),
     }));

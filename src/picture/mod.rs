@@ -1,11 +1,16 @@
-//! A study's answer to look at: pictures as SVG and PNG, and a page with all of them.
+//! Ropes and studies' answers to look at, as SVG, PNG and pages.
 //!
-//! Pictures are made of a [`Summary`] and the [`Scene`] it is about, and of nothing else: the same ones give the same
-//! bytes. Each stands on its own white ground, with names of what it shows and the unit. Colours stay apart for
-//! colour-blind eyes.
+//! A [`Drawing`] shows traces in a scene and their ropes. The [gallery](Situation) has small ones of all that can happen.
+//!
+//! The pictures of a study are made of a [`Summary`] and the [`Scene`] it is about, and of nothing else; [`page`] has all of
+//! them. Each stands on its own white ground, with names of what it shows and the unit.
+//!
+//! The same things give the same bytes. Colours stay apart for colour-blind eyes.
 
 mod chart;
 mod colour;
+mod drawing;
+mod gallery;
 mod histogram;
 mod label;
 mod map;
@@ -21,6 +26,8 @@ mod ticks;
 use crate::scene::Scene;
 use crate::study::Summary;
 
+pub use drawing::{DrawError, Drawing, MOST_FRAMES, Part, Theme};
+pub use gallery::Situation;
 pub use histogram::histogram;
 pub use map::{length_map, map};
 pub use page::page;

@@ -43,6 +43,25 @@ impl View {
         View { low: self.low - more, high: self.high + more }
     }
 
+    /// What `near` takes up if that is much less than the whole plane that `all` takes up, else the whole, with a margin
+    /// and no side more than `aspect` times the other; `None` without any point. A point of `near` is one of `all`.
+    pub(super) fn of_what_matters(
+        near: impl IntoIterator<Item = DVec2>,
+        all: impl IntoIterator<Item = DVec2>,
+        aspect: f64,
+    ) -> Option<Self> {
+        let (taken, whole) = (View::around(near)?, View::around(all)?);
+        let [near, far] = [taken, whole].map(|v| v.size().max_element());
+        let view = if near > 0.0 && near < 0.5 * far {
+            taken.padded(0.2).widened(0.02 * far, aspect).within(whole.padded(0.02))
+        } else {
+            whole.padded(0.04)
+        };
+        // Where there is but one point, it has some room round it.
+        let least = if far > 0.0 { 0.0 } else { (whole.low.abs().max_element() * 0.1).max(f64::MIN_POSITIVE * 1e16) };
+        Some(view.widened(least, aspect))
+    }
+
     /// The part that is in `other` too.
     pub(super) fn within(self, other: View) -> Self {
         View { low: self.low.max(other.low), high: self.high.min(other.high) }
@@ -57,7 +76,7 @@ pub(super) struct Frame {
     pub(super) top: f64,
     pub(super) width: f64,
     pub(super) height: f64,
-    scale: f64,
+    pub(super) scale: f64,
 }
 
 impl Frame {
@@ -80,7 +99,7 @@ impl Frame {
     pub(super) fn walls(&self, scene: &Scene) -> String {
         let mut lines: BTreeSet<[Point; 2]> = BTreeSet::new();
         for wall in 0..scene.walls().len() {
-            if let Some(ends) = self.clipped(scene.ends(wall)) {
+            if let Some(ends) = clip(self.view, scene.ends(wall)) {
                 let [a, b] = ends.map(|p| self.at(p).map(|x| (x * 10.0).round() as i64));
                 if a != b {
                     lines.insert([a.min(b), a.max(b)]);
@@ -89,29 +108,27 @@ impl Frame {
         }
         path(&lines)
     }
+}
 
-    /// The part of a wall within the view.
-    fn clipped(&self, [a, b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
-        let along = b - a;
-        let (mut from, mut to) = (0.0f64, 1.0f64);
-        for axis in 0..2 {
-            for (speed, room) in
-                [(-along[axis], a[axis] - self.view.low[axis]), (along[axis], self.view.high[axis] - a[axis])]
-            {
-                if speed == 0.0 {
-                    if room < 0.0 {
-                        return None;
-                    }
-                } else if speed < 0.0 {
-                    from = from.max(room / speed);
-                } else {
-                    to = to.min(room / speed);
+/// The part of the straight way from `a` to `b` within `view`.
+pub(super) fn clip(view: View, [a, b]: [DVec2; 2]) -> Option<[DVec2; 2]> {
+    let along = b - a;
+    let (mut from, mut to) = (0.0f64, 1.0f64);
+    for axis in 0..2 {
+        for (speed, room) in [(-along[axis], a[axis] - view.low[axis]), (along[axis], view.high[axis] - a[axis])] {
+            if speed == 0.0 {
+                if room < 0.0 {
+                    return None;
                 }
+            } else if speed < 0.0 {
+                from = from.max(room / speed);
+            } else {
+                to = to.min(room / speed);
             }
         }
-        let point = |t: f64, end| if t == 0.0 || t == 1.0 { end } else { a + along * t };
-        (from <= to).then(|| [point(from, a), point(to, b)])
     }
+    let point = |t: f64, end| if t == 0.0 || t == 1.0 { end } else { a + along * t };
+    (from <= to).then(|| [point(from, a), point(to, b)])
 }
 
 /// In tenths of a pixel.

@@ -59,17 +59,7 @@ pub fn ropes(summary: &Summary, scene: &Scene) -> Option<String> {
 /// Which part of the plane is shown.
 fn view(ropes: &[CommonRope], scene: &Scene) -> Option<View> {
     let points = || ropes.iter().flat_map(|r| r.wraps.iter().chain([&r.anchor])).map(|&p| DVec2::from(p));
-    let taken = View::around(points())?;
-    let whole = View::around(scene.vertices().iter().copied().chain(points()))?;
-    let [near, far] = [taken, whole].map(|v| v.size().max_element());
-    let view = if near > 0.0 && near < 0.5 * far {
-        taken.padded(0.2).widened(0.02 * far, 1.5).within(whole.padded(0.02))
-    } else {
-        whole.padded(0.04)
-    };
-    // Where there is but one point, it has some room round it.
-    let least = if far > 0.0 { 0.0 } else { (whole.low.abs().max_element() * 0.1).max(f64::MIN_POSITIVE * 1e16) };
-    Some(view.widened(least, 1.5))
+    View::of_what_matters(points(), scene.vertices().iter().copied().chain(points()), 1.5)
 }
 
 /// A rope from its anchor to beyond its last turn.
@@ -119,14 +109,14 @@ fn mark(svg: &mut Svg, [x, y]: [f64; 2], left: bool) {
 }
 
 /// The way from `a` to `b`, one pixel long.
-fn towards(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+pub(super) fn towards(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     let (x, y) = (b[0] - a[0], b[1] - a[1]);
     let length = x.hypot(y);
     if length > 0.0 { [x / length, y / length] } else { [0.0, 0.0] }
 }
 
 /// Where the number of a turn stands: on the side where the wall end does not lie.
-fn beside(before: [f64; 2], at: [f64; 2], after: Option<[f64; 2]>, left: bool) -> [f64; 2] {
+pub(super) fn beside(before: [f64; 2], at: [f64; 2], after: Option<[f64; 2]>, left: bool) -> [f64; 2] {
     let (a, b) = (towards(before, at), after.map_or([0.0, 0.0], |next| towards(at, next)));
     let [x, y] = towards([0.0, 0.0], [a[0] + b[0], a[1] + b[1]]);
     let away = if left { [-y, x] } else { [y, -x] };

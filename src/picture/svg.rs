@@ -20,16 +20,38 @@ pub(super) enum Align {
 impl Svg {
     /// A document of that size on white ground, so that it can be read on any page; `title` is what a screen reader says.
     pub(super) fn new(width: f64, height: f64, title: &str) -> Self {
-        let [w, h] = [width, height].map(|x| px(x.ceil()));
-        let mut svg = Svg { out: String::new() };
+        let mut svg = Svg::blank([width, height], title, "fill=\"#333\"");
+        svg.rect([0.0, 0.0], [width.ceil(), height.ceil()], "fill=\"#fff\"");
+        svg
+    }
+
+    /// A document of that size without a ground; `style` holds for all that says nothing else.
+    pub(super) fn blank(size: [f64; 2], title: &str, style: &str) -> Self {
+        let [w, h] = size.map(|x| px(x.ceil()));
+        let mut svg = Svg::part();
         let _ = write!(
             svg.out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
-             font-family=\"sans-serif\" font-size=\"12\" fill=\"#333\">\n<title>{}</title>\n",
+             font-family=\"sans-serif\" font-size=\"12\" {style}>\n<title>{}</title>\n",
             escape(title)
         );
-        svg.rect([0.0, 0.0], [width.ceil(), height.ceil()], "fill=\"#fff\"");
         svg
+    }
+
+    /// A part of a document, to be [added](Self::add) once it is known what stands before it.
+    pub(super) fn part() -> Self {
+        Svg { out: String::new() }
+    }
+
+    /// All that `part` holds.
+    pub(super) fn add(&mut self, part: Svg) {
+        self.out.push_str(&part.out);
+    }
+
+    /// Markup of our own that needs no other method.
+    pub(super) fn raw(&mut self, markup: &str) {
+        self.out.push_str(markup);
+        self.out.push('\n');
     }
 
     /// The document.

@@ -37,6 +37,23 @@ pub struct Event {
     pub side: Side,
 }
 
+impl Event {
+    /// Pushes or pops the contact.
+    ///
+    /// # Panics
+    ///
+    /// If the event is none of this rope's: a vertex that is not there, or an unwrap of another than the pivot.
+    pub(super) fn apply(&self, rope: &mut Rope, vertices: &[DVec2]) {
+        match self.kind {
+            EventKind::Wrap => rope.push(self.vertex, vertices[self.vertex as usize], self.side),
+            EventKind::Unwrap => {
+                let popped = rope.pop().expect("an unwrap follows a wrap");
+                assert_eq!(popped.vertex, self.vertex, "the unwrap of a contact that is not the pivot");
+            }
+        }
+    }
+}
+
 /// Whether a trace kept to the rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Status {
@@ -94,13 +111,7 @@ pub fn replay(anchor: DVec2, vertices: &[DVec2], points: usize, events: &[Event]
     let mut events = events.iter().peekable();
     for k in 0..points {
         while let Some(e) = events.next_if(|e| e.step as usize <= k) {
-            match e.kind {
-                EventKind::Wrap => rope.push(e.vertex, vertices[e.vertex as usize], e.side),
-                EventKind::Unwrap => {
-                    let popped = rope.pop().expect("an unwrap follows a wrap");
-                    assert_eq!(popped.vertex, e.vertex, "the unwrap of a contact that is not the pivot");
-                }
-            }
+            e.apply(&mut rope, vertices);
         }
         each(k, &rope);
     }

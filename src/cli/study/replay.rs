@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use tautline::engine::{Engine, Job, Reference};
 use tautline::output::write_events;
+use tautline::picture::Drawing;
 
 use super::folder::Folder;
 use crate::cli::failure::Failure;
+use crate::cli::look::{Look, Target, write};
 use crate::cli::print;
 use crate::cli::summary::short;
 
@@ -21,6 +23,11 @@ pub(crate) struct Args {
     /// Where to write its wraps and unwraps: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
+    /// Where to draw it: .svg, .png, or .html for a page that plays it
+    #[arg(id = "picture", long = "draw", value_name = "FILE")]
+    draw: Option<PathBuf>,
+    #[command(flatten)]
+    look: Look,
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
@@ -34,9 +41,13 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
-    let record = Reference::new(model).evaluate(&[trace], &Job::new())?.remove(0);
+    let target = args.draw.as_deref().map(|path| Target::new(path, &args.look)).transpose()?;
+    let record = Reference::new(model).evaluate(std::slice::from_ref(&trace), &Job::new())?.remove(0);
     if let Some(path) = &args.events {
         write_events(path, model.vertices(), std::slice::from_ref(&record))?;
+    }
+    if let Some(target) = &target {
+        write(target, &Drawing::new(model).with(&trace, &record), &args.look)?;
     }
     print(&format!(
         "trace {}: {} steps, {} events, length {} at the end, {} at the most, {} contacts\n",
