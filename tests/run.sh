@@ -47,3 +47,5 @@ say "tests"
 cargo test --release --lib --bins --tests
 say "a study's page in a browser"
 tests/page.sh
+say "a trace that plays in a browser"
+tests/animation.sh

@@ -4,6 +4,8 @@ mod batch;
 mod built_in;
 mod cli;
 mod conservative;
+mod drawings;
+mod gallery;
 mod golden;
 mod pictures;
 mod random;

@@ -174,7 +174,7 @@ fn answer(scene: &Scene) -> Summary {
 }
 
 /// A picture's pixels, 720 wide; it must be an SVG that has a picture at all.
-fn pixels(svg: &str) -> Pixmap {
+pub(crate) fn pixels(svg: &str) -> Pixmap {
     let png = picture::png(svg, 720).unwrap_or_else(|e| panic!("{e}\n{svg}"));
     Pixmap::decode_png(&png).unwrap()
 }
@@ -185,7 +185,7 @@ fn count(pixels: &Pixmap, [r, g, b]: [u8; 3]) -> usize {
 }
 
 /// All texts in a picture.
-fn texts(svg: &str) -> Vec<String> {
+pub(crate) fn texts(svg: &str) -> Vec<String> {
     let document = Document::parse(svg).unwrap();
     document.descendants().filter(|n| n.has_tag_name("text")).filter_map(|n| n.text().map(str::to_owned)).collect()
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use tautline::engine::{Engine, Job, Reference};
-use tautline::output::write_events;
+use tautline::output::{check_output, write_events};
 use tautline::picture::Drawing;
 
 use super::folder::Folder;
@@ -41,13 +41,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
+    args.events.as_deref().map(check_output).transpose()?;
     let target = args.draw.as_deref().map(|path| Target::new(path, &args.look)).transpose()?;
     let record = Reference::new(model).evaluate(std::slice::from_ref(&trace), &Job::new())?.remove(0);
-    if let Some(path) = &args.events {
-        write_events(path, model.vertices(), std::slice::from_ref(&record))?;
-    }
     if let Some(target) = &target {
         write(target, &Drawing::new(model).with(&trace, &record), &args.look)?;
+    }
+    if let Some(path) = &args.events {
+        write_events(path, model.vertices(), std::slice::from_ref(&record))?;
     }
     print(&format!(
         "trace {}: {} steps, {} events, length {} at the end, {} at the most, {} contacts\n",

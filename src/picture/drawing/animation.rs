@@ -15,8 +15,8 @@ use super::{DrawError, Drawing};
 use crate::picture::label::count;
 use crate::picture::svg::{Svg, px};
 
-/// The most points of all moments' ropes together: some two megabytes.
-const POINTS: usize = 150_000;
+/// The most points of all moments' ropes together, about: a megabyte.
+const POINTS: usize = 60_000;
 
 /// The most moments, however short the ropes.
 const MOMENTS: usize = 1500;
@@ -94,12 +94,8 @@ impl Canvas<'_> {
         let ropes = self.ropes(film, &clock, anchor, corners);
         let last = ropes.last().map_or(String::new(), |(_, points)| points.clone());
         let moves = clock.animate("points", false, &ropes);
-        for style in [
-            format!("{} stroke-opacity=\".7\" stroke-width=\"4.5\"", self.theme.stroke(Tone::Ground)),
-            format!("{} {DASHES}", self.theme.stroke(Tone::Ink)),
-        ] {
-            self.svg.raw(&format!("<polyline points=\"{last}\" fill=\"none\" {style}>{moves}</polyline>"));
-        }
+        let style = format!("{} {DASHES}", self.theme.stroke(Tone::Ink));
+        self.svg.raw(&format!("<polyline points=\"{last}\" fill=\"none\" {style}>{moves}</polyline>"));
         self.turning(film, &clock);
         let places: Vec<[f64; 2]> = film.states.iter().map(|s| near(self.at(s.at))).collect();
         let along = |axis: usize| -> Vec<(f64, String)> {

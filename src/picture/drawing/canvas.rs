@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::key::{Entry, Key};
 use super::theme::{Theme, Tone};
+use super::trace::distance;
 use crate::picture::plane::{Frame, View, clip};
 use crate::picture::svg::{Svg, px};
 use crate::scene::Scene;
@@ -72,11 +73,17 @@ impl Canvas<'_> {
         }
     }
 
-    /// The free end.
-    pub(super) fn free_end(&mut self, a: DVec2, tone: Tone) {
-        let at = self.at(a);
-        if self.shows(at) {
-            self.key.add(Entry::FreeEnd);
+    /// The free end; a ring round the anchor's mark where it lies on that.
+    pub(super) fn free_end(&mut self, a: DVec2, anchor: DVec2, tone: Tone) {
+        let (at, tied) = (self.at(a), self.at(anchor));
+        if !self.shows(at) {
+            return;
+        }
+        self.key.add(Entry::FreeEnd);
+        if distance(at, tied) < 8.0 {
+            let stroke = self.theme.stroke(tone);
+            self.svg.circle(at, 8.0, &format!("fill=\"none\" {stroke} stroke-width=\"2\""));
+        } else {
             free_end_mark(self.svg, self.theme, at, tone);
         }
     }
@@ -95,6 +102,7 @@ impl Canvas<'_> {
 pub(super) fn wall_style(theme: Theme, letters: usize, wide: f64) -> String {
     let dense = letters as f64 / wide;
     let line = match dense {
+        ..=0.25 => "2.4",
         ..=40.0 => "1.6",
         ..=120.0 => "1",
         _ => ".6",

@@ -23,8 +23,8 @@ pub(super) enum Entry {
     TurnLeft,
     TurnRight,
     Straight,
-    /// How many rays of the pivot are drawn, of how many.
-    Rays(usize, usize),
+    /// How many rays of the pivot are drawn if not all of them are, of how many.
+    Rays(Option<(usize, usize)>),
     Unwrapping,
     /// Where the event of a small picture happens.
     Event,
@@ -42,7 +42,13 @@ pub(super) struct Key(BTreeSet<Entry>);
 
 impl Key {
     pub(super) fn add(&mut self, entry: Entry) {
-        self.0.insert(entry);
+        // Small pictures have different numbers of rays; one entry stands for them all.
+        if matches!(entry, Entry::Rays(_)) && self.0.iter().any(|e| matches!(e, Entry::Rays(_))) {
+            self.0.retain(|e| !matches!(e, Entry::Rays(_)));
+            self.0.insert(Entry::Rays(None));
+        } else {
+            self.0.insert(entry);
+        }
     }
 
     /// Where each entry stands in a key that is that wide, and how high it is.
@@ -69,7 +75,9 @@ impl Key {
     pub(super) fn draw(&self, svg: &mut Svg, theme: Theme, [left, top]: [f64; 2], wide: f64) {
         for ([x, y], entry) in self.places(wide).0 {
             let (x, y) = (left + x, top + y + ROW / 2.0);
-            entry.mark(svg, theme, [x, y]);
+            // Where traces have colours of their own, those of one trace mean nothing.
+            let plain = self.0.iter().any(|e| matches!(e, Entry::Several(..)));
+            entry.mark(svg, theme, [x, y], &|tone| if plain { Tone::Ink } else { tone });
             svg.text([x + MARK + 6.0, y + 4.0], Align::Start, &theme.fill(Tone::Muted), &entry.name());
         }
     }
@@ -89,8 +97,8 @@ impl Entry {
             Entry::TurnLeft => "turn, wall end on the left".into(),
             Entry::TurnRight => "turn, wall end on the right".into(),
             Entry::Straight => "contact passed straight".into(),
-            Entry::Rays(shown, all) if shown == all => "rays of the pivot".into(),
-            Entry::Rays(shown, all) => format!("rays of the pivot ({shown} of {})", count(all as u64)),
+            Entry::Rays(None) => "rays of the pivot".into(),
+            Entry::Rays(Some((shown, all))) => format!("rays of the pivot ({shown} of {})", count(all as u64)),
             Entry::Unwrapping => "unwrapping ray".into(),
             Entry::Event => "where it wraps or unwraps".into(),
             Entry::Wall => "wall".into(),
@@ -98,22 +106,22 @@ impl Entry {
     }
 
     /// The mark, in the middle of the left edge of its place.
-    fn mark(self, svg: &mut Svg, theme: Theme, [x, y]: [f64; 2]) {
+    fn mark(self, svg: &mut Svg, theme: Theme, [x, y]: [f64; 2], own: &dyn Fn(Tone) -> Tone) {
         let middle = [x + MARK / 2.0, y];
         let (from, to) = ([x, y], [x + MARK, y]);
         let line = |svg: &mut Svg, tone, rest: &str| svg.line(from, to, &format!("{} {rest}", theme.stroke(tone)));
         match self {
             Entry::Anchor => anchor_mark(svg, theme, middle),
             Entry::FreeEnd => free_end_mark(svg, theme, middle, Tone::Ink),
-            Entry::Trace => line(svg, Tone::Trace(0), "stroke-width=\"1.2\""),
-            Entry::Points(_) => point_mark(svg, theme, middle, Tone::Trace(0)),
-            Entry::ToCome => line(svg, Tone::Trace(0), "stroke-width=\"1.2\" stroke-opacity=\".35\""),
+            Entry::Trace => line(svg, own(Tone::Trace(0)), "stroke-width=\"1.2\""),
+            Entry::Points(_) => point_mark(svg, theme, middle, own(Tone::Trace(0))),
+            Entry::ToCome => line(svg, own(Tone::Trace(0)), "stroke-width=\"1.2\" stroke-opacity=\".35\""),
             Entry::Rope => line(svg, Tone::Ink, DASHES),
             Entry::Several(i, _) => line(svg, Tone::Trace(i), DASHES),
-            Entry::TurnLeft => turn_mark(svg, theme, middle, true, 1.0, Tone::Left),
-            Entry::TurnRight => turn_mark(svg, theme, middle, false, 1.0, Tone::Right),
+            Entry::TurnLeft => turn_mark(svg, theme, middle, true, 1.0, own(Tone::Left)),
+            Entry::TurnRight => turn_mark(svg, theme, middle, false, 1.0, own(Tone::Right)),
             Entry::Straight => straight_mark(svg, theme, middle),
-            Entry::Rays(..) => line(svg, Tone::Muted, RAY_DASHES),
+            Entry::Rays(_) => line(svg, Tone::Muted, RAY_DASHES),
             Entry::Unwrapping => line(svg, Tone::Ink, DOTS),
             Entry::Event => {
                 svg.circle(middle, 8.0, &format!("fill=\"none\" {} stroke-width=\"1.2\"", theme.stroke(Tone::Ink)))

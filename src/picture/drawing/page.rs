@@ -63,7 +63,7 @@ impl Drawing<'_> {
         canvas.svg.open("g", "id=\"still\"");
         let turns = [Tone::Left, Tone::Right];
         canvas.rope(&Shape::new(anchor, &moment), &RopeStyle { tone: Tone::Ink, turns, numbers: false });
-        canvas.free_end(moment.at, Tone::Ink);
+        canvas.free_end(moment.at, anchor, Tone::Ink);
         canvas.svg.close("g");
         for c in film.ropes.iter().flatten().filter(|c| c.turns) {
             canvas.key.add(if c.left { Entry::TurnLeft } else { Entry::TurnRight });
@@ -78,10 +78,10 @@ impl Drawing<'_> {
         // In a script `<` could end the element.
         let data = data.to_string().replace('<', "\\u003c");
         let body = format!(
-            "<h1>Trace {id}</h1>\n{}\
+            "<h1>Trace {id}</h1>\n\
              <div class=\"player\" hidden>\n<button type=\"button\" id=\"play\">Play</button>\n\
              <input type=\"range\" id=\"time\" step=\"any\" aria-label=\"time in steps\">\n</div>\n\
-             <p><output id=\"state\" for=\"time\"></output></p>\n\
+             <p><output id=\"state\" for=\"time\"></output></p>\n{}\
              <script type=\"application/json\" id=\"film\">{data}</script>\n<script>\n{SCRIPT}</script>\n",
             figure(&svg)
         );
@@ -116,7 +116,7 @@ impl Canvas<'_> {
         self.svg.open("g", "id=\"moving\" visibility=\"hidden\"");
         let halo = self.theme.stroke(Tone::Ground);
         self.svg.raw(&format!(
-            "<polyline id=\"halo\" fill=\"none\" {halo} stroke-opacity=\".7\" stroke-width=\"4.5\"/>\n\
+            "<polyline id=\"halo\" fill=\"none\" {halo} stroke-opacity=\".5\" stroke-width=\"4.5\"/>\n\
              <polyline id=\"rope\" fill=\"none\" {} {DASHES}/>\n<path id=\"left\" {}/>\n<path id=\"right\" {}/>\n\
              <circle id=\"free\" r=\"4.6\" {} stroke-width=\"2\"/>",
             self.theme.stroke(Tone::Ink),

@@ -30,7 +30,7 @@ impl Canvas<'_> {
         let all = rays.len();
         rays.truncate(most);
         if all > 0 {
-            self.key.add(Entry::Rays(rays.len(), all));
+            self.key.add(Entry::Rays((rays.len() < all).then_some((rays.len(), all))));
             let data: String = rays.iter().map(|(_, ray)| self.line(ray)).collect();
             self.svg.path(&data, &format!("fill=\"none\" {} {RAY_DASHES}", self.theme.stroke(Tone::Muted)));
         }

@@ -7,6 +7,7 @@ use glam::DVec2;
 use super::canvas::{Canvas, DASHES, straight_mark, turn_mark};
 use super::key::Entry;
 use super::theme::Tone;
+use super::trace::distance;
 use crate::picture::label::width;
 use crate::picture::ropes::{beside, towards};
 use crate::picture::svg::Align;
@@ -14,6 +15,9 @@ use crate::rope::{Contact, Moment, Side};
 
 /// Beyond this many turns the marks are smaller.
 const MANY: usize = 40;
+
+/// A contact that is passed straight so near to another mark has none, in pixels.
+const CROWDED: f64 = 6.0;
 
 /// The size of the letters that number turns.
 const LETTERS: f64 = 10.5;
@@ -62,15 +66,17 @@ impl Canvas<'_> {
         if !data.is_empty() && shape.anchor.distance(shape.a) + shape.turns.len() as f64 > 0.0 {
             self.key.add(Entry::Rope);
             let halo = self.theme.stroke(Tone::Ground);
-            self.svg.path(&data, &format!("fill=\"none\" {halo} stroke-opacity=\".7\" stroke-width=\"4.5\""));
+            self.svg.path(&data, &format!("fill=\"none\" {halo} stroke-opacity=\".5\" stroke-width=\"4.5\""));
             self.svg.path(&data, &format!("fill=\"none\" {} {DASHES}", self.theme.stroke(style.tone)));
         }
         let size = if shape.turns.len() > MANY { 0.65 } else { 1.0 };
+        let mut places: Vec<[f64; 2]> = shape.turns.iter().map(|c| self.at(c.at)).collect();
         for contact in &shape.straight {
             let at = self.at(contact.at);
-            if self.shows(at) {
+            if self.shows(at) && places.iter().all(|&p| distance(p, at) > CROWDED) {
                 self.key.add(Entry::Straight);
                 straight_mark(self.svg, self.theme, at);
+                places.push(at);
             }
         }
         // A wall end that is touched several times on one side is marked once.

@@ -48,9 +48,10 @@ impl Drawing<'_> {
         for (i, (dragged, moment)) in shown.iter().enumerate() {
             let tone = if alone { Tone::Ink } else { Tone::Trace(i) };
             let turns = if alone { [Tone::Left, Tone::Right] } else { [tone; 2] };
-            let shape = Shape::new(self.anchor.unwrap_or_default(), moment);
+            let anchor = self.anchor.unwrap_or_default();
+            let shape = Shape::new(anchor, moment);
             canvas.rope(&shape, &RopeStyle { tone, turns, numbers: alone });
-            canvas.free_end(moment.at, tone);
+            canvas.free_end(moment.at, anchor, tone);
             if !alone {
                 canvas.key.add(Entry::Several(i, dragged.record.trace));
             }

@@ -23,6 +23,8 @@ const FRAMES: usize = 24;
 
 const COLUMNS: usize = 3;
 const GAP: f64 = 14.0;
+/// How high a small picture may be.
+const HIGHEST: f64 = 300.0;
 /// How much room the words above a small picture take.
 const HEAD: f64 = 24.0;
 
@@ -84,7 +86,7 @@ impl Drawing<'_> {
         let wide = WIDTH - 2.0 * MARGIN;
         let columns = panels.len().clamp(1, COLUMNS);
         let each = (wide - GAP * (columns - 1) as f64) / columns as f64;
-        let frame = Frame::fit(self.view(1.5)?, [0.0, 0.0], [each, 420.0]);
+        let frame = Frame::fit(self.view(1.5)?, [0.0, 0.0], [each, HIGHEST]);
         let lines = wrapped(heading, wide, 14.0);
         let top = MARGIN + 20.0 * lines.len() as f64;
         let rows = panels.len().div_ceil(columns);
@@ -132,7 +134,7 @@ impl Drawing<'_> {
         let anchor = self.anchor.unwrap_or_default();
         let turns = [Tone::Left, Tone::Right];
         canvas.rope(&Shape::new(anchor, moment), &RopeStyle { tone: Tone::Ink, turns, numbers: true });
-        canvas.free_end(moment.at, Tone::Ink);
+        canvas.free_end(moment.at, anchor, Tone::Ink);
         canvas.anchor(anchor);
         if let Some(event) = moment.event.map(|i| dragged.record.events[i]) {
             canvas.ring(self.scene.vertices()[event.vertex as usize]);

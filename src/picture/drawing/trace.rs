@@ -15,6 +15,9 @@ const CIRCLES: f64 = 0.14;
 /// The most points of a line in the file. Lines with more are drawn coarser, which nobody can see.
 const CORNERS: usize = 20_000;
 
+/// A line of more points than that is finer.
+const DENSE: usize = 3000;
+
 /// How a trace is drawn.
 pub(super) struct TraceStyle {
     pub(super) tone: Tone,
@@ -32,26 +35,30 @@ impl Canvas<'_> {
         let behind: Vec<_> = behind.iter().copied().chain([here]).collect();
         let ahead: Vec<_> = std::iter::once(here).chain(ahead.iter().copied()).collect();
         for (part, opacity, entry) in [(&ahead, ".35", Entry::ToCome), (&behind, ".9", Entry::Trace)] {
-            let data = self.line(&thinned(part));
+            let line = thinned(part);
+            let data = self.line(&line);
             if !data.is_empty() {
                 self.key.add(entry);
-                let rest = "stroke-width=\"1.2\" stroke-linejoin=\"round\"";
+                let width = if line.len() > DENSE { ".7" } else { "1.2" };
+                let rest = format!("stroke-width=\"{width}\" stroke-linejoin=\"round\"");
                 self.svg.path(&data, &format!("fill=\"none\" {stroke} stroke-opacity=\"{opacity}\" {rest}"));
             }
         }
         if style.points {
-            self.points(&ways[..made], style.tone);
+            self.points(&ways, made, style.tone);
         }
     }
 
     /// Circles at every 1st, 2nd, 5th, 10th and so on of the points, such that they have room; none where that would be
     /// but a few of very many.
-    fn points(&mut self, ways: &[[f64; 2]], tone: Tone) {
+    ///
+    /// How many have room goes by the whole trace, so that they stay the same from one moment to the next.
+    fn points(&mut self, ways: &[[f64; 2]], made: usize, tone: Tone) {
         let seen: Vec<[f64; 2]> = ways.iter().copied().filter(|&p| self.shows(p)).collect();
         let most = (CIRCLES * self.frame.width) as usize;
         let Some(every) = every(ways, seen.len(), most) else { return };
         let mut drawn = false;
-        for &at in ways.iter().step_by(every) {
+        for &at in ways[..made].iter().step_by(every) {
             if self.shows(at) {
                 point_mark(self.svg, self.theme, at, tone);
                 drawn = true;

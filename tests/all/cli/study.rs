@@ -207,6 +207,14 @@ fn one_trace_is_replayed() {
     let events = folder.text("e.jsonl").lines().count();
     assert!(told.contains(&format!(" {events} events")), "{told} {events}");
     folder.refused(2, "study replay a --trace 500", &["0 to 499"]);
+
+    folder.done("study replay a --trace 7 --draw d.svg --step 150");
+    assert!(folder.text("d.svg").contains("Trace 7 after step 150 of 200"));
+    folder.done("study replay a --trace 7 --draw d.html");
+    assert!(folder.text("d.html").contains("<script>"));
+    folder.refused(2, "study replay a --trace 7 --draw d.gif --events f.jsonl", &["d.gif: the extension"]);
+    folder.refused(2, "study replay a --trace 7 --step 3", &["--draw"]);
+    folder.refused(2, "study replay a --trace 7 --draw e.svg --step 201", &["trace 7 ends with step 200"]);
 }
 
 #[test]
