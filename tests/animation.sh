@@ -25,6 +25,8 @@ cat >"$scratch/watch.html" <<'HTML'
 <script>
 const faults = [];
 addEventListener('error', event => faults.push('error: ' + (event.message || event.target.outerHTML)), true);
+// A browser without a screen draws hardly a frame while its clock is turned forward.
+window.requestAnimationFrame = frame => setTimeout(() => frame(performance.now()), 16);
 const after = milliseconds => new Promise(done => setTimeout(done, milliseconds));
 addEventListener('load', async () => {
     const rope = () => document.getElementById('rope').getAttribute('points');

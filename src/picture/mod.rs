@@ -2,7 +2,7 @@
 //!
 //! A [`Drawing`] shows traces in a scene and their ropes. The [gallery](Situation) has small ones of all that can happen.
 //!
-//! The pictures of a study are made of a [`Summary`] and the [`Scene`] it is about, and of nothing else; [`page`] has all of
+//! The pictures of a study are made of a [`Summary`] and the [`Scene`] it is about, and of nothing else; [`page()`] has all of
 //! them. Each stands on its own white ground, with names of what it shows and the unit.
 //!
 //! The same things give the same bytes. Colours stay apart for colour-blind eyes.

@@ -53,6 +53,9 @@ impl Drawing<'_> {
     }
 }
 
+/// A value that an attribute takes, and when, from 0 to 1.
+type Change = (f64, String);
+
 /// When each moment is shown.
 struct Clock {
     /// From 0 to 1 for each state.
@@ -70,10 +73,10 @@ impl Clock {
     }
 
     /// An element that gives an attribute these values at these times, and the last one until it begins anew.
-    fn animate(&self, attribute: &str, discrete: bool, values: &[(f64, String)]) -> String {
+    fn animate(&self, attribute: &str, discrete: bool, values: &[Change]) -> String {
         let rest = values.last().filter(|_| !discrete).map(|(_, value)| (1.0, value.clone()));
-        let all: Vec<&(f64, String)> = values.iter().chain(&rest).collect();
-        let list = |each: &dyn Fn(&(f64, String)) -> String| all.iter().map(|v| each(v)).collect::<Vec<_>>().join(";");
+        let all: Vec<&Change> = values.iter().chain(&rest).collect();
+        let list = |each: &dyn Fn(&Change) -> String| all.iter().map(|v| each(v)).collect::<Vec<_>>().join(";");
         format!(
             "<animate attributeName=\"{attribute}\" calcMode=\"{}\" dur=\"{:.2}s\" repeatCount=\"indefinite\" \
              keyTimes=\"{}\" values=\"{}\"/>",
@@ -98,7 +101,7 @@ impl Canvas<'_> {
         self.svg.raw(&format!("<polyline points=\"{last}\" fill=\"none\" {style}>{moves}</polyline>"));
         self.turning(film, &clock);
         let places: Vec<[f64; 2]> = film.states.iter().map(|s| near(self.at(s.at))).collect();
-        let along = |axis: usize| -> Vec<(f64, String)> {
+        let along = |axis: usize| -> Vec<Change> {
             clock.times.iter().zip(&places).map(|(&t, place)| (t, px(place[axis]))).collect()
         };
         let end = places[places.len() - 1].map(px);
@@ -109,7 +112,7 @@ impl Canvas<'_> {
 
     /// The rope's points at each moment, as many for each: a rope with fewer corners goes through its pivot several times.
     /// Where the corners change there are two of one time, which lie on each other.
-    fn ropes(&self, film: &Film, clock: &Clock, anchor: DVec2, corners: usize) -> Vec<(f64, String)> {
+    fn ropes(&self, film: &Film, clock: &Clock, anchor: DVec2, corners: usize) -> Vec<Change> {
         let text = |rope: usize, a: DVec2| {
             let mut points: Vec<DVec2> = std::iter::once(anchor).chain(film.ropes[rope].iter().map(|c| c.at)).collect();
             points.resize(corners - 1, points[points.len() - 1]);
@@ -132,7 +135,7 @@ impl Canvas<'_> {
 
     /// A mark for each wall end and side at which the rope ever turns, seen while it does.
     fn turning(&mut self, film: &Film, clock: &Clock) {
-        let mut seen: BTreeMap<(u32, bool), (DVec2, Vec<(f64, String)>)> = BTreeMap::new();
+        let mut seen: BTreeMap<(u32, bool), (DVec2, Vec<Change>)> = BTreeMap::new();
         let name = |there: bool| if there { "visible" } else { "hidden" }.to_owned();
         for c in film.ropes.iter().flatten().filter(|c| c.turns) {
             seen.entry((c.vertex, c.left)).or_insert((c.at, vec![(0.0, name(false))]));

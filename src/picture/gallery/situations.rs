@@ -6,7 +6,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "wrap",
         title: "Wrap",
-        caption: "When the free end crosses the ray of a wall end, the rope bends there, and that wall end is the pivot.",
+        caption: "When the free end crosses the ray of a wall end, the rope bends there, and that wall end is the \
+                  pivot.",
         walls: &[[[4.0, -2.0], [4.0, 1.0]]],
         anchor: [0.0, 0.0],
         points: &[[2.0, 2.0], [5.0, 2.5], [7.0, 1.0], [7.0, -1.0]],
@@ -24,7 +25,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "several-events",
         title: "Several events in one step",
-        caption: "One long step wraps the rope round three wall ends, each from the pivot that the one before has become.",
+        caption: "One long step wraps the rope round three wall ends, each from the pivot that the one before has \
+                  become.",
         walls: &[[[2.0, -3.0], [2.0, 1.5]], [[4.0, -3.0], [4.0, 2.0]], [[6.0, -3.0], [6.0, 1.5]]],
         anchor: [0.0, 0.0],
         points: &[[1.0, 4.0], [8.0, 7.0], [8.0, -2.0]],
@@ -42,7 +44,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "both-sides",
         title: "Both sides",
-        caption: "Over one wall and under the next: the first wall end lies on the rope's right, the second on its left.",
+        caption: "Over one wall and under the next: the first wall end lies on the rope's right, the second on its \
+                  left.",
         walls: &[[[3.0, -4.0], [3.0, 1.0]], [[6.0, -1.0], [6.0, 4.0]]],
         anchor: [0.0, 0.0],
         points: &[[2.0, 3.0], [4.5, 3.0], [4.5, -3.0], [8.0, -3.0], [8.0, 2.5]],
@@ -67,7 +70,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "winding",
         title: "Winding several times",
-        caption: "Twice round the block and on: the rope holds its corners once for each time, and their numbers tell how often.",
+        caption: "Twice round the block and on: the rope holds its corners once for each time, and their numbers \
+                  tell how often.",
         walls: &[
             [[3.0, -1.0], [5.0, -1.0]],
             [[5.0, -1.0], [5.0, 1.0]],
@@ -92,7 +96,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "doubling-back",
         title: "Doubling back",
-        caption: "Wound round a lone wall that points at the anchor, the rope lies along the wall twice, out above it and back below.",
+        caption: "Wound round a lone wall that points at the anchor, the rope lies along the wall twice, out above \
+                  it and back below.",
         walls: &[[[3.0, 0.0], [6.0, 0.0]]],
         anchor: [0.0, 0.0],
         points: &[[1.0, 1.2], [7.0, 1.2], [7.0, -1.2], [2.0, -1.2], [2.0, 1.2], [4.0, 1.8]],
@@ -101,7 +106,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "passed-straight",
         title: "A contact passed straight",
-        caption: "Three wall ends on one line with the anchor: the rope passes two of them straight, keeps them, and bends at the last.",
+        caption: "Three wall ends on one line with the anchor: the rope passes two of them straight, keeps them, and \
+                  bends at the last.",
         walls: &[[[2.0, -2.0], [2.0, 0.0]], [[4.0, -2.0], [4.0, 0.0]], [[6.0, -2.0], [6.0, 0.0]]],
         anchor: [0.0, 0.0],
         points: &[[1.0, 1.5], [8.0, 1.5], [8.0, -1.5]],
@@ -120,7 +126,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "touching-a-corner",
         title: "Touching a corner",
-        caption: "The free end rests on a wall's end and goes on over it: it counts as passing a hair off the wall, and the rope wraps.",
+        caption: "The free end rests on a wall's end and goes on over it: it counts as passing a hair off the wall, \
+                  and the rope wraps.",
         walls: &[[[4.0, -2.0], [4.0, 1.0]]],
         anchor: [0.0, 0.0],
         points: &[[2.0, 2.0], [4.0, 1.0], [7.0, -1.0]],
@@ -129,7 +136,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "sliding",
         title: "Sliding along a wall",
-        caption: "The free end slides along a wall from end to end, which is no crossing, and the rope bends at both ends behind it.",
+        caption: "The free end slides along a wall from end to end, which is no crossing, and the rope bends at both \
+                  ends behind it.",
         walls: &[[[3.0, 2.0], [6.0, 1.0]]],
         anchor: [0.0, 0.0],
         points: &[[1.0, 3.0], [3.0, 2.0], [6.0, 1.0], [7.0, -1.5]],
@@ -147,7 +155,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "same-place-other-rope",
         title: "Same place, other rope",
-        caption: "Two ropes to one place: over the block, and then once round it; what counts is the way that the free end took.",
+        caption: "Two ropes to one place: over the block, and then once round it; what counts is the way that the \
+                  free end took.",
         walls: &[
             [[3.0, -1.0], [4.5, -1.0]],
             [[4.5, -1.0], [4.5, 1.0]],
