@@ -28,7 +28,7 @@ pub(crate) struct Look {
     /// The part of the plane: `near` the traces, `all` walls, or two corners
     #[arg(long, value_name = "near|all|X,Y,X,Y", allow_hyphen_values = true, value_parser = part, default_value = "near")]
     pub view: Part,
-    /// The most rays of the pivot: those nearest to the free end [default: 12]
+    /// The most rays of the pivot: those nearest to the free end [default: 12, with --frames 0]
     #[arg(long, value_name = "N")]
     pub rays: Option<usize>,
     /// The ground: `auto` is as the reader's system has it, in .png light
@@ -101,6 +101,11 @@ impl Target {
         };
         if look.animate && kind == Kind::Png {
             return Err(Failure::input(anyhow!("{shown}: a PNG does not move; --animate makes an .svg or an .html")));
+        }
+        if look.animate && kind == Kind::Svg && look.step.is_some() {
+            return Err(Failure::input(anyhow!(
+                "--step and --animate: {shown} plays all steps; an .html begins at one"
+            )));
         }
         if look.width.is_some() && kind != Kind::Png {
             return Err(Failure::input(anyhow!("--width goes with a .png; {shown} has no pixels")));

@@ -99,6 +99,8 @@ fn the_key_explains_what_occurs_and_nothing_else() {
     assert_eq!(explained(&right.drawing().at_step(1).rays(1).svg().unwrap()), one);
     let event = with(&["trace still to come", "rope", turn, "where it wraps or unwraps", "wall"]);
     assert_eq!(explained(&right.drawing().frames(None).unwrap()), event);
+    let rays = explained(&right.drawing().rays(9).frames(None).unwrap());
+    assert!(rays.contains(&"rays of the pivot") && rays.contains(&"unwrapping ray"), "{rays:?}");
 
     let left = Dragged::new(&[wall], &[&under]);
     let turn = "turn, wall end on the left";

@@ -37,7 +37,7 @@ pub enum Part {
     Between(DVec2, DVec2),
 }
 
-/// How many rays of the pivot are drawn unless told otherwise.
+/// How many rays of the pivot a still picture has unless told otherwise.
 const RAYS: usize = 12;
 
 /// A scene with traces and their ropes, to be drawn. The same drawing gives the same bytes.
@@ -76,7 +76,7 @@ pub struct Drawing<'a> {
     step: Option<usize>,
     part: Part,
     theme: Theme,
-    rays: usize,
+    rays: Option<usize>,
 }
 
 /// A trace with what its rope did.
@@ -104,7 +104,7 @@ impl<'a> Drawing<'a> {
             step: None,
             part: Part::Near,
             theme: Theme::Reader,
-            rays: RAYS,
+            rays: None,
         }
     }
 
@@ -137,10 +137,13 @@ impl<'a> Drawing<'a> {
         self
     }
 
-    /// With at most so many rays of the pivot: those nearest to the free end. With 0 the unwrapping ray is left out too.
+    /// With at most so many rays of the pivot, those nearest to the free end, and its unwrapping ray; with 0 without any.
+    ///
+    /// Unless told otherwise the still picture of one trace has 12 and small ones have none. Pictures of several traces and
+    /// moving ones never have any.
     #[must_use]
     pub fn rays(mut self, most: usize) -> Self {
-        self.rays = most;
+        self.rays = Some(most);
         self
     }
 

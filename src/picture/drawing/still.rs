@@ -5,7 +5,7 @@ use super::key::{Entry, Key};
 use super::rope::{RopeStyle, Shape};
 use super::theme::{TRACES, Theme, Tone};
 use super::trace::TraceStyle;
-use super::{Dragged, DrawError, Drawing};
+use super::{Dragged, DrawError, Drawing, RAYS};
 use crate::picture::chart::WIDTH;
 use crate::picture::label::{count, number, width};
 use crate::picture::plane::{Frame, View};
@@ -38,7 +38,7 @@ impl Drawing<'_> {
         let mut canvas = Canvas { svg: &mut inside, frame: plot.frame, theme: self.theme, key: &mut key };
         canvas.walls(self.scene);
         if let ([(_, moment)], Some(model)) = (shown.as_slice(), self.model) {
-            canvas.rays(model, moment, self.rays);
+            canvas.rays(model, moment, self.rays.unwrap_or(RAYS));
         }
         let alone = shown.len() == 1;
         for (i, (dragged, moment)) in shown.iter().enumerate() {

@@ -77,7 +77,7 @@ impl Drawing<'_> {
                 format!("Trace {trace}: events {from} to {to} of {}; {left_out} are left out", count(all as u64))
             }
         };
-        self.strip(&panels, &heading, 0)
+        self.strip(&panels, &heading, self.rays.unwrap_or(0))
     }
 
     /// Small pictures in rows of three under a heading of one or several lines, each with at most so many rays.

@@ -58,6 +58,7 @@ fn what_cannot_be_drawn_is_refused() {
     refused(&format!("{DRAW} --out a.gif"), &["a.gif: the extension", ".svg, .png or .html"]);
     refused(&format!("{DRAW} --out no/a.svg"), &["cannot write no/a.svg", "the folder no does not exist"]);
     refused(&format!("{DRAW} --animate --out a.png"), &["a PNG does not move"]);
+    refused(&format!("{DRAW} --animate --step 1 --out a.svg"), &["--step and --animate"]);
     refused(&format!("{DRAW} --width 300 --out a.svg"), &["--width goes with a .png"]);
     refused(&format!("{DRAW} --width 0 --out a.png"), &["--width", "0 x"]);
     refused(&format!("{DRAW} --view 0,0,1 --out a.svg"), &["--view", "two opposite corners"]);
