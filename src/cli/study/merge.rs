@@ -37,7 +37,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let (_, study, _) = opened.remove(0);
     folder.remember(study.plan(), &base)?;
     folder.save(&state).map_err(|e| Failure::internal(anyhow!(e)))?;
-    let run =
-        json!({ "version": env!("CARGO_PKG_VERSION"), "merged": args.folders, "seconds_of_all_runs": state.seconds() });
+    let run = json!({ "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"), "merged": args.folders, "seconds_of_all_runs": state.seconds() });
     conclude(&folder, &study, &state, &run, args.json)
 }

@@ -178,8 +178,10 @@ fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn 
 
 /// What each file of rows says of where it comes from.
 fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static str, String)> {
+    let here = Environment::here(None);
     vec![
-        ("tautline.version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("tautline.version", here.version.to_owned()),
+        ("tautline.commit", here.commit.to_owned()),
         ("tautline.study", study.identity().to_owned()),
         ("tautline.seed", study.plan().run.seed.to_string()),
         ("tautline.engine", engine.to_owned()),
@@ -192,7 +194,7 @@ fn cost(state: &State, engine: &str, on: &str, took: Duration, spent: &Spent, st
     let here = Environment::here(None);
     let seconds = took.as_secs_f64();
     json!({
-        "version": here.version, "engine": engine, "on": on, "processor": here.processor, "os": here.os,
+        "version": here.version, "commit": here.commit, "engine": engine, "on": on, "processor": here.processor, "os": here.os,
         "threads": here.threads, "shard": format!("{}/{}", state.shard().number, state.shard().of),
         "steps": steps, "seconds": seconds, "steps_per_second": steps as f64 / seconds,
         "seconds_of_all_runs": state.seconds(),
