@@ -126,7 +126,7 @@ fn proceed(
     let progress = Progress::new(if steps > 0 { traces } else { 0 });
     progress.begin(traces, steps);
     let mut parts = match study.plan().outputs.traces {
-        true => Some(Parts::open(&folder.path().join("traces"), state.done(), provenance(study, name, &on))?),
+        true => Parts::open(folder.path(), state.done(), provenance(study, name, &on))?,
         false => None,
     };
     let (start, mut saved, mut written) = (Instant::now(), Instant::now(), state.done());
@@ -160,6 +160,7 @@ fn proceed(
         Err(RunError::Plan(error)) => return Err(error.into()),
         Err(RunError::Caller(failure)) => return Err(failure),
     };
+    parts.map_or(Ok(()), Parts::finish)?;
     let run = cost(&state, name, &on, start.elapsed(), &spent, job.steps());
     conclude(folder, study, &state, &run, as_json)
 }
@@ -177,7 +178,7 @@ fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn 
 }
 
 /// What each file of rows says of where it comes from.
-fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static str, String)> {
+pub(super) fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static str, String)> {
     let here = Environment::here(None);
     vec![
         ("tautline.version", here.version.to_owned()),
