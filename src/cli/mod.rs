@@ -8,10 +8,12 @@ mod draw;
 mod engine;
 pub(crate) mod environment;
 mod eval;
+mod examples;
 mod failure;
 mod input;
 mod interrupt;
 mod look;
+mod manual;
 mod output;
 mod progress;
 mod spread;
@@ -43,17 +45,28 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Evaluate the ropes of given traces in a scene; without any, those of the built-in example
+    #[command(after_help = examples::EVAL)]
     Eval(eval::Args),
     /// Monte-Carlo studies: very many random traces, and what their ropes are like on the whole
     Study(study::Args),
     /// Check a scene, and traces in it, without evaluating ropes
+    #[command(after_help = examples::CHECK)]
     Check(check::Args),
     /// Draw traces and their ropes: at one moment, event by event, or moving
+    #[command(after_help = examples::DRAW)]
     Draw(draw::Args),
     /// Measure the throughput of all engines, side by side on the same walks
+    #[command(after_help = examples::BENCH)]
     Bench(bench::Args),
     /// List the GPUs that this machine offers
+    #[command(after_help = examples::ADAPTERS)]
     Adapters(adapters::Args),
+    /// Print a script that has a shell complete commands and options
+    #[command(after_help = examples::COMPLETIONS)]
+    Completions(manual::CompletionsArgs),
+    /// Write manual pages, one for each command
+    #[command(after_help = examples::MAN)]
+    Man(manual::ManArgs),
 }
 
 /// Runs the command line and returns the process's exit code.
@@ -68,6 +81,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Draw(args) => draw::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Adapters(args) => adapters::run(&args),
+        Command::Completions(args) => manual::completions(&args),
+        Command::Man(args) => manual::man(&args),
     }));
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,

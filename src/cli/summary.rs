@@ -160,7 +160,7 @@ impl Summary {
     pub(crate) fn json(&self, times: &Times) -> Value {
         json!({
             "scene": {"name": self.scene, "walls": self.walls, "vertices": self.vertices, "dropped": self.dropped, "anchor": self.anchor},
-            "engine": self.engine, "on": self.on, "version": env!("CARGO_PKG_VERSION"),
+            "engine": self.engine, "on": self.on, "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
             "traces": self.traces, "steps": self.steps, "violations": self.violations,
             "wraps": self.wraps, "unwraps": self.unwraps,
             "length": self.length.spread().json(), "max_length": self.max_length.spread().json(),

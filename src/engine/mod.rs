@@ -7,6 +7,7 @@ mod cpu;
 mod funnel;
 mod gpu;
 mod job;
+mod live;
 mod note;
 mod reference;
 mod walk;
@@ -21,6 +22,7 @@ pub use cpu::Cpu;
 pub use funnel::Funnel;
 pub use gpu::Gpu;
 pub use job::{Job, Phase};
+pub use live::{AdvanceError, LiveEvent, LiveRope};
 pub use note::Note;
 pub use reference::Reference;
 

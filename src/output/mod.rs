@@ -6,6 +6,7 @@
 
 mod columns;
 mod events;
+mod merge;
 mod results;
 mod rows;
 mod tables;
@@ -16,6 +17,7 @@ mod write_error;
 use std::path::Path;
 
 pub use events::{EventWriter, write_events};
+pub use merge::merge_results;
 pub use results::{ResultWriter, write_results};
 pub use whole_file::WholeFile;
 pub use write_error::WriteError;

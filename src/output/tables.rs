@@ -38,7 +38,10 @@ pub(super) struct Table<C> {
 impl<C: Columns> Table<C> {
     pub(super) fn new(path: &Path, file: WholeFile) -> Result<Self, WriteError> {
         let schema = Arc::new(Schema::new(C::fields()));
-        let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_max_row_group_row_count(Some(BATCH))
+            .build();
         // All types are Parquet's own, so readers need no copy of the Arrow schema.
         let options = ArrowWriterOptions::new().with_properties(properties).with_skip_arrow_metadata(true);
         let writer = ArrowWriter::try_new_with_options(file, schema.clone(), options).map_err(|e| error(path, e))?;
@@ -48,6 +51,24 @@ impl<C: Columns> Table<C> {
     /// Notes something about the file in its footer.
     pub(super) fn note(&mut self, key: &str, value: &str) {
         self.writer.append_key_value_metadata(KeyValue::new(key.to_owned(), value.to_owned()));
+    }
+
+    /// The columns.
+    pub(super) fn schema(&self) -> SchemaRef {
+        self.schema.clone()
+    }
+
+    /// Whether `schema` has the same columns.
+    pub(super) fn has_columns(&self, schema: &Schema) -> bool {
+        let columns = |schema: &Schema| {
+            schema.fields().iter().map(|f| (f.name().clone(), f.data_type().clone())).collect::<Vec<_>>()
+        };
+        columns(schema) == columns(&self.schema)
+    }
+
+    /// Writes rows that are there already.
+    pub(super) fn write(&mut self, rows: &RecordBatch) -> Result<(), WriteError> {
+        self.writer.write(rows).map_err(|e| error(&self.path, e))
     }
 
     pub(super) fn flush_if_full(&mut self) -> Result<(), WriteError> {

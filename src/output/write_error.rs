@@ -22,6 +22,14 @@ pub enum WriteError {
         /// What is in the way.
         fault: String,
     },
+    /// A file from which another is made cannot be read.
+    #[error("cannot read {}: {fault}", path.display())]
+    Source {
+        /// Which file.
+        path: PathBuf,
+        /// What is wrong with it.
+        fault: String,
+    },
     /// The operating system refuses.
     #[error("cannot write {}: {cause}", path.display())]
     Io {
@@ -36,6 +44,10 @@ pub enum WriteError {
 impl WriteError {
     pub(super) fn io(path: &Path, cause: std::io::Error) -> Self {
         WriteError::Io { path: path.into(), cause }
+    }
+
+    pub(super) fn source(path: &Path, fault: impl ToString) -> Self {
+        WriteError::Source { path: path.into(), fault: fault.to_string() }
     }
 
     pub(super) fn target(path: &Path, fault: impl Into<String>) -> Self {

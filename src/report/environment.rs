@@ -17,6 +17,9 @@ pub struct Environment {
     pub threads: usize,
     /// The version of this crate.
     pub version: &'static str,
+    /// The commit that it was built from, with `-changed` if the files were not those of the commit; `unknown` where there
+    /// was no repository.
+    pub commit: &'static str,
 }
 
 impl Environment {
@@ -28,6 +31,7 @@ impl Environment {
             os: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
             threads: rayon::current_num_threads(),
             version: env!("CARGO_PKG_VERSION"),
+            commit: env!("TAUTLINE_COMMIT"),
         }
     }
 }

@@ -82,10 +82,16 @@ impl Model {
         self.scene.vertices()
     }
 
-    /// Whether the segment from `a` to `b` touches no wall at all, its ends included. A wall that ends at `a` is none in the
-    /// way unless the segment runs along it, so that one can leave a wall's end. O(1) where no wall is near,
-    /// else O(log walls + walls near it).
+    /// Whether the segment from `a` to `b` touches no wall at all, its ends included: [`touched`](Self::touched) finds none.
+    #[inline]
     pub fn is_clear(&self, a: DVec2, b: DVec2) -> bool {
+        self.touched(a, b).is_none()
+    }
+
+    /// A wall that the segment from `a` to `b` touches, its ends included. A wall that ends at `a` is none in the way unless
+    /// the segment runs along it, so that one can leave a wall's end. O(1) where no wall is near, else O(log walls + walls
+    /// near it).
+    pub fn touched(&self, a: DVec2, b: DVec2) -> Option<u32> {
         let touches = |u: DVec2, v: DVec2| {
             if let Some(end) = [(u, v), (v, u)].iter().find(|e| e.0 == a).map(|e| e.1) {
                 return orient(a, end, b) == 0.0 && !forwards(end, a, b);
@@ -93,8 +99,8 @@ impl Model {
             // All on one line: the boxes meet, so the segments do.
             !same_side(orient(u, v, a), orient(u, v, b)) && !same_side(orient(a, b, u), orient(a, b, v))
         };
-        let visit = |_, [u, v]: [DVec2; 2]| if touches(u, v) { Break(()) } else { Continue(()) };
-        self.index.visit(lower(a, b), higher(a, b), visit).is_continue()
+        let visit = |wall, [u, v]: [DVec2; 2]| if touches(u, v) { Break(wall) } else { Continue(()) };
+        self.index.visit(lower(a, b), higher(a, b), visit).break_value()
     }
 
     /// The lowest and highest x and y of all vertices and the anchor.

@@ -211,7 +211,7 @@ pub struct UntilPlan {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputPlan {
-    /// One row for each trace, in the Parquet files of the folder `traces`.
+    /// One row for each trace, in `traces.parquet`.
     pub traces: bool,
     /// Pictures and `report.html`.
     pub pictures: bool,

@@ -5,10 +5,10 @@
 //! trace, what the numbers are for, and the block of four words.
 
 use glam::DVec2;
+use pulp::{Arch, Simd, WithSimd};
 
-/// How many blocks are made at once, and how many of them side by side, so that several are made in one instruction.
+/// How many blocks are made at once, so that several are made in one instruction.
 const BLOCKS: usize = 8;
-const LANES: usize = 4;
 
 /// The low half of a word.
 const LOW: u64 = u32::MAX as u64;
@@ -29,7 +29,7 @@ pub(in crate::study) enum Purpose {
 
 /// The random numbers of one trace for one purpose.
 ///
-/// There are 2^56 blocks of them, two words each, which none of 2^31 points uses up. The counter's second word holds the
+/// There are 2^56 blocks of them, four words each, which none of 2^31 points uses up. The counter's second word holds the
 /// purpose in its low byte and in the others what does not fit into the first, so no stream runs into another's.
 pub(in crate::study) struct Random {
     key: [u64; 2],
@@ -37,18 +37,18 @@ pub(in crate::study) struct Random {
     trace: u64,
     /// The number of the next block to be made.
     block: u64,
-    words: [u64; 2 * BLOCKS],
+    words: [u32; 4 * BLOCKS],
     /// The first of `words` that was not drawn yet.
     next: usize,
 }
 
 impl Random {
     pub(in crate::study) fn new(seed: u64, purpose: Purpose, trace: u64) -> Self {
-        Random { key: halves(seed), purpose, trace, block: 0, words: [0; 2 * BLOCKS], next: 2 * BLOCKS }
+        Random { key: halves(seed), purpose, trace, block: 0, words: [0; 4 * BLOCKS], next: 4 * BLOCKS }
     }
 
     #[inline]
-    fn word(&mut self) -> u64 {
+    fn word(&mut self) -> u32 {
         if self.next == self.words.len() {
             self.refill();
         }
@@ -58,31 +58,38 @@ impl Random {
 
     #[inline(never)]
     fn refill(&mut self) {
-        let [low, high] = halves(self.trace);
-        for words in self.words.chunks_exact_mut(2 * LANES) {
-            let blocks: [u64; LANES] = std::array::from_fn(|i| self.block + i as u64);
-            // What the first word of a counter cannot hold goes above the purpose.
-            let carried = blocks.map(|block| block >> 32 << 8 | self.purpose as u64);
-            let made = philox([blocks.map(|block| block & LOW), carried, [low; LANES], [high; LANES]], self.key);
-            for i in 0..LANES {
-                words[2 * i] = made[1][i] << 32 | made[0][i];
-                words[2 * i + 1] = made[3][i] << 32 | made[2][i];
-            }
-            self.block += LANES as u64;
-        }
+        // With the widest vectors that the processor has.
+        Arch::new().dispatch(Fill(self));
+        self.block += BLOCKS as u64;
         self.next = 0;
+    }
+
+    #[inline(always)]
+    fn fill(&mut self) {
+        let [low, high] = halves(self.trace);
+        let blocks: [u64; BLOCKS] = std::array::from_fn(|i| self.block + i as u64);
+        // What the first word of a counter cannot hold goes above the purpose.
+        let carried = blocks.map(|block| block >> 32 << 8 | self.purpose as u64);
+        let made = philox([blocks.map(|block| block & LOW), carried, [low; BLOCKS], [high; BLOCKS]], self.key);
+        for (words, made) in self.words.chunks_exact_mut(BLOCKS).zip(&made) {
+            for (word, &made) in words.iter_mut().zip(made) {
+                *word = made as u32;
+            }
+        }
     }
 
     /// From 0 up to 1, 1 left out: a multiple of 2^-53.
     #[inline]
     pub(in crate::study) fn unit(&mut self) -> f64 {
-        (self.word() >> 11) as f64 / (1u64 << 53) as f64
+        let bits = u64::from(self.word()) << 32 | u64::from(self.word());
+        (bits >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// From `-size` up to `size`.
+    /// Between -1 and 1: an odd multiple of 2^-32.
     #[inline]
-    pub(in crate::study) fn within(&mut self, size: f64) -> f64 {
-        (2.0 * self.unit() - 1.0) * size
+    pub(in crate::study) fn either_way(&mut self) -> f64 {
+        // The words as whole numbers with a sign, moved by a half to lie evenly about 0.
+        (f64::from(self.word() as i32) + 0.5) / (1u64 << 31) as f64
     }
 
     /// A direction, as a vector one long. Made without angles: sines and cosines are not the same on every machine.
@@ -101,19 +108,28 @@ impl Random {
         p * (-2.0 * libm::log(square) / square).sqrt()
     }
 
-    /// A uniform point of the unit disc, its centre left out, and the square of its distance from there. Each coordinate is an
-    /// odd multiple of 2^-32, so one word makes a point, and no square is 0.
+    /// A uniform point of the unit disc, its centre left out, and the square of its distance from there.
     #[inline]
     fn in_disc(&mut self) -> (DVec2, f64) {
         loop {
-            // The halves as whole numbers with a sign, moved by a half to lie evenly about 0.
-            let [x, y] = halves(self.word()).map(|half| (f64::from(half as u32 as i32) + 0.5) / (1u64 << 31) as f64);
-            let p = DVec2::new(x, y);
+            let p = DVec2::new(self.either_way(), self.either_way());
             let square = p.length_squared();
             if square < 1.0 {
                 return (p, square);
             }
         }
+    }
+}
+
+/// Makes the next blocks. Not a closure, which would be compiled for the narrowest vectors.
+struct Fill<'r>(&'r mut Random);
+
+impl WithSimd for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.0.fill();
     }
 }
 
@@ -123,7 +139,7 @@ fn halves(word: u64) -> [u64; 2] {
 }
 
 /// Philox4x32-10 of `N` counters, each a column; the words are below 2^32.
-#[inline]
+#[inline(always)]
 fn philox<const N: usize>(counters: [[u64; N]; 4], mut key: [u64; 2]) -> [[u64; N]; 4] {
     let [mut a, mut b, mut c, mut d] = counters;
     for _ in 0..10 {
@@ -169,12 +185,14 @@ mod tests {
         let mut random = Random::new(seed, Purpose::Goal, trace);
         // The last blocks before the first word of the counter is used up, and the first after.
         random.block = (1 << 32) - BLOCKS as u64;
-        let words: Vec<u64> = (0..4 * BLOCKS).map(|_| random.word()).collect();
-        for (i, pair) in words.chunks(2).enumerate() {
-            let block = (1u64 << 32) - BLOCKS as u64 + i as u64;
-            let counter = [block as u32, 3 | ((block >> 32) as u32) << 8, 0x7654_3210, 0xfedc_ba98];
-            let [a, b, c, d] = philox_of(counter, [0x89ab_cdef, 0x0123_4567]).map(u64::from);
-            assert_eq!(pair, [b << 32 | a, d << 32 | c]);
+        let words: Vec<u32> = (0..8 * BLOCKS).map(|_| random.word()).collect();
+        for block in 0..2 * BLOCKS {
+            let number = (1u64 << 32) - BLOCKS as u64 + block as u64;
+            let counter = [number as u32, 3 | ((number >> 32) as u32) << 8, 0x7654_3210, 0xfedc_ba98];
+            // First the first words of all blocks that are made at once, then the second ones.
+            let first = block / BLOCKS * 4 * BLOCKS + block % BLOCKS;
+            let found = [0, 1, 2, 3].map(|i| words[first + i * BLOCKS]);
+            assert_eq!(found, philox_of(counter, [0x89ab_cdef, 0x0123_4567]));
         }
         let mut purposes = vec![];
         for purpose in [Purpose::Walk, Purpose::Start, Purpose::Anchor, Purpose::Goal] {

@@ -1,6 +1,7 @@
 //! Studies against answers that are known otherwise.
 
 use std::convert::Infallible;
+use std::f64::consts::PI;
 
 use glam::DVec2;
 use tautline::engine::{Cpu, Engine, Job, Reference};
@@ -196,4 +197,45 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
         let most = if name == "median" { 1.0 } else { 0.96 };
         assert!((0.84..=most).contains(&share), "{name}: {share} of the intervals of 0.9 hold the truth");
     }
+}
+
+/// By how much the angle about a small obstacle spreads, of which that share is at least a whole turn either way.
+///
+/// The angle of a walk about what it cannot enter has in the limit the density `sech(pi x / 2 s) / 2 s`, where s is half the
+/// logarithm of the number of steps and a constant that depends on the obstacle (Bélisle, "Windings of random walks", Ann.
+/// Probab. 17, 1989; Rudnick and Hu, "The winding angle distribution of an ordinary random walk", J. Phys. A 20, 1987). So
+/// a share of `4 / pi * atan(exp(-pi x / 2 s))` is at x or beyond, and x is a whole turn here.
+fn spread_of_angle(share: f64) -> f64 {
+    -PI * PI / (PI * share / 4.0).tan().ln()
+}
+
+#[test]
+fn winding_about_a_small_obstacle_follows_its_law() {
+    let folder = tempfile::tempdir().unwrap();
+    // So much room about it that no walk comes to its end.
+    let far = [[-2000.0, -2000.0], [2000.0, 2000.0]].map(DVec2::from);
+    let walls: Vec<String> = far
+        .iter()
+        .chain(&[DVec2::ZERO])
+        .map(|p| format!("[[{},{}],[{},{}]]", p.x - 0.5, p.y, p.x + 0.5, p.y))
+        .collect();
+    let scene = format!(r#"{{"type":"MultiLineString","coordinates":[{}]}}"#, walls.join(","));
+    std::fs::write(folder.path().join("speck.geojson"), scene).unwrap();
+    let spread = |steps: u32, traces: u32| {
+        let plan = format!(
+            "[scene]\nfile = \"speck.geojson\"\nanchor = [0.0, 1.0]\n[walk]\nkind = \"gaussian\"\nstep = 1.0\n\
+             steps = {steps}\n[run]\ntraces = {traces}\nblock = 500\n[tallies]\nmap_every = 1000\n"
+        );
+        let summary = answer(&plan, folder.path());
+        let obstacle = summary.obstacles.iter().find(|o| o.at[1] == 0.0).unwrap();
+        let share = obstacle.wound.value;
+        let error = (share * (1.0 - share) / f64::from(traces)).sqrt();
+        let found = spread_of_angle(share);
+        (found, spread_of_angle(share + error) - found)
+    };
+    // The constant falls out of the difference.
+    let (few, few_error) = spread(400, 100_000);
+    let (many, many_error) = spread(40_000, 10_000);
+    let (grown, error) = (many - few, few_error.hypot(many_error));
+    assert!((grown - 0.5 * 100.0f64.ln()).abs() < 4.0 * error + 0.05, "{few} to {many}: {grown} +- {error}");
 }

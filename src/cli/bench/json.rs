@@ -13,7 +13,7 @@ pub(super) fn report(environment: &Environment, seed: u64, measured: &Measured) 
             "adapter": adapter.map(|a| &a.name), "adapter_type": adapter.map(|a| a.kind.to_string()),
             "backend": adapter.map(|a| &a.backend), "driver": adapter.map(|a| &a.driver),
             "processor": environment.processor, "os": environment.os, "threads": environment.threads,
-            "version": environment.version, "seed": seed,
+            "version": environment.version, "commit": environment.commit, "seed": seed,
         },
         "results": measured.rows.iter().map(row).collect::<Vec<_>>(),
         "skipped": measured.skipped.iter().map(|s| json!({"engine": s.contender, "why": s.why})).collect::<Vec<_>>(),

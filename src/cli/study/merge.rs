@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use serde_json::json;
+use tautline::output::merge_results;
 use tautline::study::{StateError, merge};
 
 use super::folder::Folder;
-use super::run::conclude;
+use super::parts::TRACES;
+use super::run::{conclude, provenance};
 use crate::cli::failure::Failure;
 
 #[derive(Debug, clap::Args)]
@@ -37,7 +39,13 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let (_, study, _) = opened.remove(0);
     folder.remember(study.plan(), &base)?;
     folder.save(&state).map_err(|e| Failure::internal(anyhow!(e)))?;
-    let run =
-        json!({ "version": env!("CARGO_PKG_VERSION"), "merged": args.folders, "seconds_of_all_runs": state.seconds() });
+    if study.plan().outputs.traces {
+        let parts: Vec<PathBuf> = args.folders.iter().map(|folder| folder.join(TRACES)).collect();
+        merge_results(&parts, &folder.path().join(TRACES), &provenance(&study, "merged", "several runs"))?;
+    }
+    let run = json!({
+        "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"), "merged": args.folders,
+        "seconds_of_all_runs": state.seconds(),
+    });
     conclude(&folder, &study, &state, &run, args.json)
 }

@@ -13,7 +13,7 @@ use clap::Subcommand;
 use tautline::study::{EXAMPLE, Plan};
 
 use super::failure::Failure;
-use super::{print, print_json};
+use super::{examples, print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -24,18 +24,25 @@ pub(crate) struct Args {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Run a study, or the built-in example
+    #[command(after_help = examples::STUDY_RUN)]
     Run(run::RunArgs),
     /// Go on with a study that was stopped
+    #[command(after_help = examples::STUDY_RESUME)]
     Resume(run::ResumeArgs),
     /// Put the shards of a study together
+    #[command(after_help = examples::STUDY_MERGE)]
     Merge(merge::Args),
     /// Show what a study says so far
+    #[command(after_help = examples::STUDY_SHOW)]
     Show(show::Args),
     /// Evaluate one of a study's traces again
+    #[command(after_help = examples::STUDY_REPLAY)]
     Replay(replay::Args),
     /// Write a study's file to start from, with comments
+    #[command(after_help = examples::STUDY_INIT)]
     Init(InitArgs),
     /// Print the JSON Schema of studies' files
+    #[command(after_help = examples::STUDY_SCHEMA)]
     Schema,
 }
 

@@ -1,16 +1,25 @@
-//! One row for each trace, in a folder of Parquet files: one for each time between two checkpoints, so that a study that
-//! was stopped or killed goes on where its state does.
+//! One row for each trace: `traces.parquet`. Until the study is done, the rows are in a folder of such files, one for each
+//! time between two checkpoints, so that a study that was stopped or killed goes on where its state does.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
-use tautline::output::{ResultWriter, WriteError};
+use tautline::output::{ResultWriter, WriteError, merge_results};
 use tautline::rope::TraceRecord;
 
 use crate::cli::failure::Failure;
 
+/// The file that is there in the end, in the study's folder.
+pub(super) const TRACES: &str = "traces.parquet";
+
+/// What the folder of the parts is called once it is to go.
+const GONE: &str = ".traces";
+
 pub(super) struct Parts {
+    /// Where the file will stand.
+    whole: PathBuf,
+    /// Where the rows are until then.
     folder: PathBuf,
     /// What is noted in each file.
     notes: Vec<(&'static str, String)>,
@@ -18,11 +27,20 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// Goes on after the first `done` blocks: what was written of others is dropped.
-    pub(super) fn open(folder: &Path, done: u64, notes: Vec<(&'static str, String)>) -> Result<Self, Failure> {
+    /// Goes on after the first `done` blocks of the study in `folder`: what was written of others is dropped. `None` if all is
+    /// in its place.
+    pub(super) fn open(folder: &Path, done: u64, notes: Vec<(&'static str, String)>) -> Result<Option<Self>, Failure> {
+        let (whole, folder) = (folder.join(TRACES), folder.join("traces"));
         let failed = |e: std::io::Error| Failure::internal(anyhow!("cannot write {}: {e}", folder.display()));
-        fs::create_dir_all(folder).map_err(failed)?;
-        for entry in fs::read_dir(folder).map_err(failed)? {
+        let gone = folder.with_file_name(GONE);
+        if gone.exists() {
+            fs::remove_dir_all(gone).map_err(failed)?;
+        }
+        if whole.exists() && !folder.exists() {
+            return Ok(None);
+        }
+        fs::create_dir_all(&folder).map_err(failed)?;
+        for entry in fs::read_dir(&folder).map_err(failed)? {
             let name = entry.map_err(failed)?.file_name().to_string_lossy().into_owned();
             let number = name.strip_suffix(".parquet").map(|stem| stem.trim_start_matches('.').split('.').next());
             let first = number.flatten().and_then(|n| n.parse::<u64>().ok());
@@ -31,7 +49,7 @@ impl Parts {
                 fs::remove_file(folder.join(name)).map_err(failed)?;
             }
         }
-        Ok(Parts { folder: folder.to_owned(), notes, current: None })
+        Ok(Some(Parts { whole, folder, notes, current: None }))
     }
 
     /// Adds rows; `first` is the number of the block with which they begin, among those of the shard.
@@ -47,5 +65,19 @@ impl Parts {
     /// Puts the rows since the last time in their place.
     pub(super) fn close(&mut self) -> Result<(), WriteError> {
         self.current.take().map_or(Ok(()), ResultWriter::finish)
+    }
+
+    /// Puts all rows into one file, once the study is done.
+    pub(super) fn finish(mut self) -> Result<(), Failure> {
+        self.close()?;
+        let failed = |e: std::io::Error| Failure::internal(anyhow!("cannot read {}: {e}", self.folder.display()));
+        let mut parts = Vec::new();
+        for entry in fs::read_dir(&self.folder).map_err(failed)? {
+            parts.push(entry.map_err(failed)?.path());
+        }
+        merge_results(&parts, &self.whole, &self.notes)?;
+        // Gone at once: were only some of them there, the next run would take them for all.
+        let gone = self.folder.with_file_name(GONE);
+        fs::rename(&self.folder, &gone).and_then(|()| fs::remove_dir_all(&gone)).map_err(failed)
     }
 }

@@ -126,7 +126,7 @@ fn proceed(
     let progress = Progress::new(if steps > 0 { traces } else { 0 });
     progress.begin(traces, steps);
     let mut parts = match study.plan().outputs.traces {
-        true => Some(Parts::open(&folder.path().join("traces"), state.done(), provenance(study, name, &on))?),
+        true => Parts::open(folder.path(), state.done(), provenance(study, name, &on))?,
         false => None,
     };
     let (start, mut saved, mut written) = (Instant::now(), Instant::now(), state.done());
@@ -160,6 +160,7 @@ fn proceed(
         Err(RunError::Plan(error)) => return Err(error.into()),
         Err(RunError::Caller(failure)) => return Err(failure),
     };
+    parts.map_or(Ok(()), Parts::finish)?;
     let run = cost(&state, name, &on, start.elapsed(), &spent, job.steps());
     conclude(folder, study, &state, &run, as_json)
 }
@@ -177,9 +178,11 @@ fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn 
 }
 
 /// What each file of rows says of where it comes from.
-fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static str, String)> {
+pub(super) fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static str, String)> {
+    let here = Environment::here(None);
     vec![
-        ("tautline.version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("tautline.version", here.version.to_owned()),
+        ("tautline.commit", here.commit.to_owned()),
         ("tautline.study", study.identity().to_owned()),
         ("tautline.seed", study.plan().run.seed.to_string()),
         ("tautline.engine", engine.to_owned()),
@@ -192,7 +195,7 @@ fn cost(state: &State, engine: &str, on: &str, took: Duration, spent: &Spent, st
     let here = Environment::here(None);
     let seconds = took.as_secs_f64();
     json!({
-        "version": here.version, "engine": engine, "on": on, "processor": here.processor, "os": here.os,
+        "version": here.version, "commit": here.commit, "engine": engine, "on": on, "processor": here.processor, "os": here.os,
         "threads": here.threads, "shard": format!("{}/{}", state.shard().number, state.shard().of),
         "steps": steps, "seconds": seconds, "steps_per_second": steps as f64 / seconds,
         "seconds_of_all_runs": state.seconds(),
@@ -249,27 +252,34 @@ fn draw(folder: &Folder, summary: &Summary, study: &Study, run: &serde_json::Val
     folder.write("report.html", picture::page(summary, &shown, Some(run)).as_bytes())
 }
 
-/// Draws and evaluates a little, to say what all of it would cost.
+/// Does the first blocks, to say what all of them would cost.
 fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     let plan = study.plan();
-    let model = &study.models()[0];
-    let few = plan.run.traces.min(200);
+    let (mut engines, on) = open_engines(&args.engine, study)?;
+    let name = engines[0].name();
+    let mut state = State::new(study, args.shard);
     let clock = Instant::now();
-    let traces: Vec<_> = (0..few).map(|number| study.trace(number)).collect::<Result<_, _>>()?;
-    let own: Vec<_> = traces.into_iter().step_by(study.models().len()).collect();
-    let (mut engine, on) = args.engine.open(model)?;
-    let evaluated = engine.evaluate(&own, &Job::new())?.len();
-    let each = clock.elapsed().as_secs_f64() / few.max(1) as f64;
-    let mut text = format!("the study is sound: {} traces in {} blocks", plan.run.traces, plan.blocks());
-    text += &format!(
-        ", {} walls, {} anchors, engine {} on {on}\n",
-        model.scene().walls().len(),
+    let mut first = None;
+    let outcome = go(study, &mut engines, &mut state, &Job::new(), |_, _, traces| {
+        first = Some((traces, clock.elapsed()));
+        Err(())
+    });
+    match outcome {
+        Ok(_) | Err(RunError::Caller(())) => {}
+        Err(RunError::Engine(error)) => return Err(error.into()),
+        Err(RunError::Plan(error)) => return Err(error.into()),
+    }
+    let mut text = format!(
+        "the study is sound: {} traces in {} blocks, {} walls, anchors: {}, engine {name} on {on}\n",
+        plan.run.traces,
+        plan.blocks(),
+        study.models()[0].scene().walls().len(),
         study.models().len(),
-        engine.name()
     );
-    if evaluated > 0 {
-        let all = Duration::from_secs_f64(each * plan.run.traces as f64 / f64::from(args.shard.of));
-        text += &format!("about {} at most, going by {few} of the traces\n", show::duration(all));
+    if let Some((traces, took)) = first.filter(|&(traces, _)| traces > 0) {
+        let share = plan.run.traces as f64 / f64::from(args.shard.of) / traces as f64;
+        let all = Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX);
+        text += &format!("about {}, going by the first {traces} of the traces\n", show::duration(all));
     }
     print(&text)
 }

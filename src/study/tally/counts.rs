@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use rustc_hash::FxHashMap as HashMap;
 use serde::{Deserialize, Serialize};
 use sketches_ddsketch::{Config, DDSketch};
 
@@ -98,8 +99,8 @@ impl Counts {
     pub(crate) fn of_block(setting: &Setting, traced: &[Traced<'_>]) -> ([Moments; SCALARS.len()], Self) {
         let mut counts = Counts { exceeded: vec![BTreeMap::new(); setting.limits.len()], ..Counts::default() };
         let mut moments = [Moments::default(); SCALARS.len()];
-        let mut touched = BTreeMap::<u32, [u64; 2]>::new();
-        let mut cells = BTreeMap::<u32, [u64; 3]>::new();
+        let mut touched = HashMap::default();
+        let mut cells = HashMap::default();
         let (mut looks, mut lookups) = (0, Vec::new());
         for Traced { trace, record } in traced {
             let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count() as u64;
@@ -156,8 +157,8 @@ impl Counts {
         setting: &Setting,
         trace: &SettledTrace,
         record: &TraceRecord,
-        touched: &mut BTreeMap<u32, [u64; 2]>,
-        cells: &mut BTreeMap<u32, [u64; 3]>,
+        touched: &mut HashMap<u32, [u64; 2]>,
+        cells: &mut HashMap<u32, [u64; 3]>,
     ) {
         let model = setting.model(record.trace);
         let ends = ends_of_steps(trace);
@@ -181,7 +182,7 @@ impl Counts {
                     if let Some(cell) = grid.of(ends[step as usize]) {
                         let [visits, lengths, _] = cells.entry(cell).or_default();
                         *visits += 1;
-                        *lengths += (length(step) / setting.unit).round() as u64;
+                        *lengths += (length(step) / setting.unit + 0.5) as u64;
                     }
                 }
             }

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec2;
+use pulp::{Arch, Simd, WithSimd};
 
 use super::stride::Stride;
 use crate::study::random::Random;
@@ -10,6 +11,9 @@ use crate::study::random::Random;
 /// The least by which the heading may turn, in radians, once a step was drawn in vain: one that never turns would stand
 /// before a wall for good.
 const LEAST: f64 = 0.1;
+
+/// How many turns are drawn at once, so that several are made in one instruction.
+const AHEAD: usize = 16;
 
 /// By what the turn widens with each step drawn in vain.
 const WIDENS: f64 = 1.5;
@@ -20,28 +24,82 @@ pub(super) struct Persistent {
     turn: f64,
     /// One long, but for roundings.
     heading: DVec2,
+    /// The square of the length that the heading had before the last step.
+    before: f64,
     /// The heading of the step drawn last.
     turned: DVec2,
     /// By how much that one could turn.
     spread: f64,
+    /// Turns drawn ahead, as the coordinates of vectors one long, and the first that was not taken yet.
+    turns: [[f64; AHEAD]; 2],
+    next: usize,
 }
 
 impl Persistent {
     pub(super) fn new(step: f64, turn: f64, random: &mut Random) -> Self {
         let heading = random.direction();
-        Persistent { step, turn, heading, turned: heading, spread: turn }
+        Persistent {
+            step,
+            turn,
+            heading,
+            before: 1.0,
+            turned: heading,
+            spread: turn,
+            turns: [[0.0; AHEAD]; 2],
+            next: AHEAD,
+        }
     }
 
+    /// The step along the heading turned by `turn`, a vector one long.
     #[inline]
-    fn draw_within(&mut self, spread: f64, random: &mut Random) -> DVec2 {
-        self.spread = spread;
-        // Not the standard library's, which differ from machine to machine.
-        let (sin, cos) = libm::sincos(random.within(spread));
-        let turned = DVec2::new(cos, sin).rotate(self.heading);
-        // One step of Newton's method for the length of 1, so that roundings do not add up.
-        self.turned = turned * (1.5 - 0.5 * turned.length_squared());
+    fn along(&mut self, turn: DVec2) -> DVec2 {
+        // Half a step of Newton's method for the length of 1, so that roundings do not add up; by the length that the heading
+        // had before, since that of the heading itself would have to be waited for.
+        self.turned = turn.rotate(self.heading) * (1.25 - 0.25 * self.before);
         self.step * self.turned
     }
+
+    /// Draws the next turns.
+    #[inline(never)]
+    fn refill(&mut self, random: &mut Random) {
+        let angles: [f64; AHEAD] = std::array::from_fn(|_| self.turn * random.either_way());
+        // With the widest vectors that the processor has.
+        self.turns = Arch::new().dispatch(Directions(angles));
+        self.next = 0;
+    }
+}
+
+/// The directions at these angles. Not a closure, which would be compiled for the narrowest vectors.
+struct Directions([f64; AHEAD]);
+
+impl WithSimd for Directions {
+    type Output = [[f64; AHEAD]; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> [[f64; AHEAD]; 2] {
+        let [mut cos, mut sin] = [[0.0; AHEAD]; 2];
+        for i in 0..AHEAD {
+            DVec2 { x: cos[i], y: sin[i] } = direction(self.0[i]);
+        }
+        [cos, sin]
+    }
+}
+
+/// The direction at that angle, from -pi to pi, to ten digits or so, as a vector one long: the angle itself is as coarse. Made
+/// of products and sums alone, in a fixed order, so it is the same on every machine; the standard library's sines are not.
+#[inline(always)]
+fn direction(angle: f64) -> DVec2 {
+    let x = 0.25 * angle;
+    let s = x * x;
+    // The Taylor series of the cosine and the sine of a quarter of the angle; their next terms are below 2e-9.
+    let cos =
+        1.0 + s * (-1.0 / 2.0 + s * (1.0 / 24.0 + s * (-1.0 / 720.0 + s * (1.0 / 40320.0 + s * (-1.0 / 3628800.0)))));
+    let sin = x + x * s * (-1.0 / 6.0 + s * (1.0 / 120.0 + s * (-1.0 / 5040.0 + s * (1.0 / 362880.0))));
+    // Twice the angle of a vector is that of its square as a complex number.
+    let (cos, sin) = (cos * cos - sin * sin, 2.0 * cos * sin);
+    let (cos, sin) = (cos * cos - sin * sin, 2.0 * cos * sin);
+    let one = 1.5 - 0.5 * (cos * cos + sin * sin);
+    DVec2::new(cos * one, sin * one)
 }
 
 impl Stride for Persistent {
@@ -51,15 +109,23 @@ impl Stride for Persistent {
 
     #[inline]
     fn draw(&mut self, random: &mut Random) -> DVec2 {
-        self.draw_within(self.turn, random)
+        if self.next == AHEAD {
+            self.refill(random);
+        }
+        self.spread = self.turn;
+        let turn = DVec2::new(self.turns[0][self.next], self.turns[1][self.next]);
+        self.next += 1;
+        self.along(turn)
     }
 
     fn draw_again(&mut self, random: &mut Random) -> DVec2 {
-        self.draw_within((self.spread.max(LEAST) * WIDENS).min(PI), random)
+        self.spread = (self.spread.max(LEAST) * WIDENS).min(PI);
+        self.along(direction(self.spread * random.either_way()))
     }
 
     #[inline]
     fn take(&mut self) {
+        self.before = self.heading.length_squared();
         self.heading = self.turned;
     }
 

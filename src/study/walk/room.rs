@@ -38,20 +38,26 @@ impl Room {
 pub(super) struct Clearing {
     low: DVec2,
     high: DVec2,
+    /// How far the next box that is tried reaches on either side, in steps: twice as far as the last one that was free, half
+    /// as far as the last that was not.
+    reach: f64,
     /// How many steps are looked at one by one before another box is tried.
     pause: u32,
 }
 
-/// How far a clearing reaches on either side, in steps: further ones are seldom free, nearer ones soon left.
-const REACH: f64 = 8.0;
+/// How far a clearing reaches on either side, in steps: nearer ones are left too soon to be of use.
+const NEAREST: f64 = 2.0;
 
-/// How many steps are looked at one by one once a box was not free.
-const PAUSE: u32 = 16;
+/// Further ones are not much longer stayed in, and seldom free.
+const FURTHEST: f64 = 32.0;
+
+/// How many steps are looked at one by one once the nearest box was not free.
+const PAUSE: u32 = 8;
 
 impl Default for Clearing {
     fn default() -> Self {
         // A box that holds nothing.
-        Clearing { low: DVec2::INFINITY, high: DVec2::NEG_INFINITY, pause: 0 }
+        Clearing { low: DVec2::INFINITY, high: DVec2::NEG_INFINITY, reach: 4.0 * NEAREST, pause: 0 }
     }
 }
 
@@ -67,11 +73,14 @@ impl Clearing {
             self.pause -= 1;
             return;
         }
-        let (low, high) = (higher(here - REACH * step, room.low), lower(here + REACH * step, room.high));
+        let far = self.reach * step;
+        let (low, high) = (higher(here - far, room.low), lower(here + far, room.high));
         if room.model.index().is_free(low, high) {
-            (self.low, self.high) = (low, high);
+            *self = Clearing { low, high, reach: (2.0 * self.reach).min(FURTHEST), pause: 0 };
+        } else if self.reach > NEAREST {
+            *self = Clearing { reach: 0.5 * self.reach, ..Clearing::default() };
         } else {
-            *self = Clearing { pause: PAUSE, ..Clearing::default() };
+            *self = Clearing { reach: NEAREST, pause: PAUSE, ..Clearing::default() };
         }
     }
 }

@@ -157,3 +157,20 @@ fn help_and_version_go_to_stdout() {
         }
     }
 }
+
+#[test]
+fn shells_complete_and_manual_pages_name_all_commands() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = folder.done(&format!("completions {shell}")).stdout;
+        assert!(script.contains("tautline") && script.contains("on-violation"), "{shell}: {script}");
+    }
+    folder.refused(2, "completions tcsh", &["tcsh", "bash"]);
+    std::fs::create_dir(folder.path("man")).unwrap();
+    folder.done("man man");
+    let page = |name: &str| folder.text(&format!("man/tautline{name}.1"));
+    for (name, part) in [("", "tautline\\-eval(1)"), ("-eval", "on\\-violation"), ("-study-run", "dry\\-run")] {
+        assert!(page(name).contains(part), "{name}: {}", page(name));
+    }
+    folder.refused(2, "man nowhere", &["nowhere", "no folder"]);
+}

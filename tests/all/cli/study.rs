@@ -155,25 +155,20 @@ fn a_study_ends_when_it_is_certain_enough() {
     folder.refused(2, "study run u.toml --out d --shard 0/2", &["--shard"]);
 }
 
-/// The rows of the folder `traces`, which stand in its files in the order of their names.
+/// Trace and length of each row of `traces.parquet`.
 fn rows(folder: &Folder, run: &str) -> Vec<(u64, f64)> {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::RowAccessor;
-    let mut files: Vec<_> =
-        std::fs::read_dir(folder.path(run).join("traces")).unwrap().map(|e| e.unwrap().path()).collect();
-    files.sort();
-    let mut rows = Vec::new();
-    for file in files {
-        let reader = SerializedFileReader::new(std::fs::File::open(file).unwrap()).unwrap();
-        let notes = reader.metadata().file_metadata().key_value_metadata().unwrap();
-        let seed = notes.iter().find(|note| note.key == "tautline.seed").unwrap();
-        assert_eq!(seed.value.as_deref(), Some("1"));
-        for row in reader.get_row_iter(None).unwrap() {
-            let row = row.unwrap();
-            rows.push((row.get_ulong(0).unwrap(), row.get_double(3).unwrap()));
-        }
-    }
-    rows
+    assert!(!folder.path(run).join("traces").exists(), "the parts are still there");
+    let file = std::fs::File::open(folder.path(run).join("traces.parquet")).unwrap();
+    let reader = SerializedFileReader::new(file).unwrap();
+    let notes = reader.metadata().file_metadata().key_value_metadata().unwrap();
+    let note = |key| notes.iter().find(|note| note.key == key).and_then(|note| note.value.clone()).unwrap();
+    assert_eq!((note("tautline.seed").as_str(), note("tautline.version").as_str()), ("1", env!("CARGO_PKG_VERSION")));
+    let summary = json(folder, &format!("{run}/summary.json"));
+    assert_eq!(summary["identity"], note("tautline.study"));
+    let rows = reader.get_row_iter(None).unwrap().map(Result::unwrap);
+    rows.map(|row| (row.get_ulong(0).unwrap(), row.get_double(3).unwrap())).collect()
 }
 
 #[test]
@@ -193,6 +188,14 @@ fn rows_are_whole_after_a_stop() {
     child.wait().unwrap();
     folder.done("study resume b");
     assert!(rows(&folder, "b") == whole);
+    // One that is done stays as it is.
+    folder.done("study resume b");
+    assert!(rows(&folder, "b") == whole);
+    for k in 0..2 {
+        folder.done(&format!("study run t.toml --out k{k} --shard {k}/2"));
+    }
+    folder.done("study merge k0 k1 --out merged");
+    assert!(rows(&folder, "merged") == whole);
     let mean = whole.iter().map(|row| row.1).sum::<f64>() / 40_000.0;
     let told = json(&folder, "a/summary.json")["scalars"][0]["mean"]["value"].as_f64().unwrap();
     assert!((mean - told).abs() < 1e-9 * mean);

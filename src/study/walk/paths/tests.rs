@@ -83,6 +83,6 @@ fn paths_among_walls_that_touch_and_cross_are_no_shorter_than_can_be() {
             equal += usize::from((ours - shortest).abs() <= 1e-12 * shortest);
         }
     }
-    // Few ways slip through.
-    assert!(equal > 40, "{equal}");
+    // Where the shortest way slips between walls that touch, ours is longer.
+    assert!(equal > 20, "{equal}");
 }

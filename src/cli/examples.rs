@@ -1,0 +1,98 @@
+//! What the help of each command ends with: examples, the ones that people need most first.
+
+pub(super) const EVAL: &str = "Examples:
+  tautline eval                                              the built-in example
+  tautline eval --scene plan.geojson --traces drags.csv --out ropes.parquet
+  tautline eval --scene plan.geojson --traces drags.csv --events events.jsonl --json
+  tautline eval --scene arena.map --anchor 20.5,10.5 --traces drags.csv --engine gpu";
+
+pub(super) const CHECK: &str = "Examples:
+  tautline check --scene plan.geojson
+  tautline check --scene plan.geojson --traces drags.csv
+  tautline check --scene plan.geojson --traces drags.csv --on-violation flag --json";
+
+pub(super) const DRAW: &str = "Examples:
+  tautline draw --out rope.svg                               the built-in example
+  tautline draw --scene plan.geojson --traces drags.csv --trace 4 --step 37 --out rope.png
+  tautline draw --scene plan.geojson --traces drags.csv --trace 4 --out rope.html
+  tautline draw --scene plan.geojson --traces drags.csv --frames 1-12 --out events.svg
+  tautline draw --scene plan.geojson --out plan.svg
+  tautline draw --gallery gallery";
+
+pub(super) const BENCH: &str = "Examples:
+  tautline bench                                             all engines, on random walls
+  tautline bench --scene plan.geojson --step 0.5
+  tautline bench --engine cpu --engine funnel --sweep n
+  tautline bench --scene rooms --json";
+
+pub(super) const ADAPTERS: &str = "Examples:
+  tautline adapters
+  tautline adapters --json";
+
+pub(super) const COMPLETIONS: &str = "Examples:
+  tautline completions bash > ~/.local/share/bash-completion/completions/tautline
+  tautline completions zsh > ~/.zfunc/_tautline
+  tautline completions fish > ~/.config/fish/completions/tautline.fish";
+
+pub(super) const MAN: &str = "Examples:
+  tautline man ~/.local/share/man/man1                       then: man tautline";
+
+pub(crate) const STUDY_RUN: &str = "Examples:
+  tautline study run                                         the built-in example
+  tautline study run mine.toml --dry-run                     is it sound, and what would it cost?
+  tautline study run mine.toml --traces 1000000
+  tautline study run mine.toml --shard 0/4 --out part0";
+
+pub(crate) const STUDY_RESUME: &str = "Examples:
+  tautline study resume mine-study";
+
+pub(crate) const STUDY_MERGE: &str = "Examples:
+  tautline study merge part0 part1 part2 part3 --out all";
+
+pub(crate) const STUDY_SHOW: &str = "Examples:
+  tautline study show mine-study
+  tautline study show mine-study --json";
+
+pub(crate) const STUDY_REPLAY: &str = "Examples:
+  tautline study replay mine-study --trace 7
+  tautline study replay mine-study --trace 7 --events events.jsonl
+  tautline study replay mine-study --trace 7 --draw rope.svg";
+
+pub(crate) const STUDY_INIT: &str = "Examples:
+  tautline study init
+  tautline study init mine.toml";
+
+pub(crate) const STUDY_SCHEMA: &str = "Examples:
+  tautline study schema > study.schema.json";
+
+#[cfg(test)]
+mod tests {
+    use clap::{Command, CommandFactory, Parser};
+
+    use crate::cli::Cli;
+
+    /// Each command that does something, with the words that lead to it.
+    fn leaves(command: &Command, path: &str) -> Vec<(String, String)> {
+        let path = format!("{path} {}", command.get_name()).trim().to_owned();
+        if command.has_subcommands() {
+            return command.get_subcommands().flat_map(|c| leaves(c, &path)).collect();
+        }
+        vec![(path, command.get_after_help().map(ToString::to_string).unwrap_or_default())]
+    }
+
+    #[test]
+    fn every_command_has_examples_and_they_are_right() {
+        let all = leaves(&Cli::command(), "");
+        assert!(all.len() > 10);
+        for (command, help) in all {
+            let lines: Vec<&str> = help.lines().skip_while(|line| *line != "Examples:").skip(1).collect();
+            assert!(!lines.is_empty(), "{command} has no examples");
+            for line in lines.iter().take_while(|line| line.starts_with("  ")) {
+                // What follows is said about it, or done with what comes out.
+                let words = line.trim().split("  ").next().unwrap().split(" > ").next().unwrap();
+                assert!(words.starts_with(&command), "{command}: {line}");
+                Cli::try_parse_from(words.split(' ')).unwrap_or_else(|e| panic!("{words}: {e}"));
+            }
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! `tautline completions` and `tautline man`.
+
+use std::path::PathBuf;
+
+use anyhow::anyhow;
+use clap::CommandFactory;
+use clap_complete::Shell;
+
+use super::failure::Failure;
+use super::{Cli, print};
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct CompletionsArgs {
+    /// Which shell
+    shell: Shell,
+}
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct ManArgs {
+    /// The folder to write the pages to, one for each command; must be there
+    #[arg(default_value = ".", value_name = "DIR")]
+    folder: PathBuf,
+}
+
+pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "tautline", &mut script);
+    print(&String::from_utf8_lossy(&script))
+}
+
+pub(crate) fn man(args: &ManArgs) -> Result<(), Failure> {
+    let shown = args.folder.display();
+    if !args.folder.is_dir() {
+        return Err(Failure::input(anyhow!("{shown} is no folder; make it first, or give another")));
+    }
+    clap_mangen::generate_to(Cli::command(), &args.folder)
+        .map_err(|e| Failure::internal(anyhow!("cannot write to {shown}: {e}")))?;
+    print(&format!("wrote the pages to {shown}; read them with: man -l {}\n", args.folder.join("tautline.1").display()))
+}

@@ -1,0 +1,184 @@
+//! Puts files of results together, in the order of their traces.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use arrow_array::cast::AsArray;
+use arrow_array::types::UInt64Type;
+use arrow_array::{Array, RecordBatch};
+use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
+
+use super::columns::ResultColumns;
+use super::tables::Table;
+use super::{WholeFile, WriteError};
+
+/// How many rows of each file are held at a time.
+const ROWS: usize = 1 << 13;
+
+/// Writes the rows of the Parquet files at `from`, each as [`ResultWriter`](super::ResultWriter) writes it and in the order of
+/// its traces, to one such file at `to`, in the order of all traces; `notes` go into its metadata. O(rows) in time for few
+/// files; in memory a few thousand rows of those whose traces overlap.
+///
+/// # Errors
+///
+/// A file that cannot be read or whose columns are others, a trace that is there twice, and those of
+/// [`check_output`](super::check_output).
+pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)]) -> Result<(), WriteError> {
+    let mut table = Table::<ResultColumns>::new(to, WholeFile::create(to)?)?;
+    notes.iter().for_each(|(key, value)| table.note(key, value));
+    // Files are opened when it is their turn, so that there may be more of them than can be open at a time.
+    let mut waiting = Vec::new();
+    for path in from {
+        waiting.extend(Source::open(path, &table, 1)?.map(|source| (source.next(), path)));
+    }
+    waiting.sort_unstable_by(|a, b| b.cmp(a));
+    let mut open: Vec<Source> = Vec::new();
+    loop {
+        // The source whose next trace is the first, and how far it goes before it is another's turn.
+        let first = (0..open.len()).min_by_key(|&i| open[i].next());
+        if let Some(&(next, path)) = waiting.last()
+            && first.is_none_or(|first| next <= open[first].next())
+        {
+            open.extend(Source::open(path, &table, ROWS)?);
+            waiting.pop();
+            continue;
+        }
+        let Some(first) = first else { break };
+        let others = (0..open.len()).filter(|&i| i != first).map(|i| open[i].next());
+        let others = others.chain(waiting.last().map(|w| w.0)).min();
+        let source = &mut open[first];
+        if others == Some(source.next()) {
+            return Err(WriteError::source(&source.path, format!("trace {} is in another file too", source.next())));
+        }
+        let traces = &traces(&source.rows)[source.at..];
+        let count = others.map_or(traces.len(), |next| traces.partition_point(|&trace| trace < next));
+        table.write(&source.rows.slice(source.at, count))?;
+        source.at += count;
+        if !source.refill()? {
+            open.swap_remove(first);
+        }
+    }
+    table.complete()?.finish_durably()
+}
+
+/// A file under way.
+struct Source {
+    path: PathBuf,
+    batches: ParquetRecordBatchReader,
+    rows: RecordBatch,
+    /// The first row that was not written yet.
+    at: usize,
+}
+
+impl Source {
+    /// `None` for a file without rows. So many of them are read at a time.
+    fn open(path: &Path, like: &Table<ResultColumns>, rows: usize) -> Result<Option<Self>, WriteError> {
+        let fault = |e: &dyn std::fmt::Display| WriteError::source(path, e);
+        let file = File::open(path).map_err(|e| fault(&e))?;
+        let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| fault(&e))?;
+        if !like.has_columns(builder.schema()) {
+            return Err(fault(&"its columns are not those of results"));
+        }
+        let batches = builder.with_batch_size(rows).build().map_err(|e| fault(&e))?;
+        let rows = RecordBatch::new_empty(like.schema());
+        let mut source = Source { path: path.to_owned(), batches, rows, at: 0 };
+        Ok(source.refill()?.then_some(source))
+    }
+
+    /// The number of the next trace.
+    fn next(&self) -> u64 {
+        traces(&self.rows)[self.at]
+    }
+
+    /// Reads on if all that was read is written; whether there is more.
+    fn refill(&mut self) -> Result<bool, WriteError> {
+        while self.at == self.rows.num_rows() {
+            let last = self.at.checked_sub(1).map(|last| traces(&self.rows)[last]);
+            match self.batches.next() {
+                None => return Ok(false),
+                Some(rows) => self.rows = rows.map_err(|e| WriteError::source(&self.path, e))?,
+            }
+            self.at = 0;
+            let sorted = last.iter().chain(traces(&self.rows)).is_sorted_by(|a, b| a < b);
+            if !sorted || self.rows.column(0).null_count() > 0 {
+                return Err(WriteError::source(&self.path, "its rows are not in the order of their traces"));
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// The traces of rows, which are in the first column.
+fn traces(rows: &RecordBatch) -> &[u64] {
+    rows.column(0).as_primitive::<UInt64Type>().values()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::{ResultWriter, write_results};
+    use crate::rope::{Side, Status, TraceRecord};
+
+    fn record(trace: u64) -> TraceRecord {
+        let wraps = (0..trace % 4).map(|i| ([i as f64, 0.5].into(), Side::Left)).collect();
+        TraceRecord {
+            trace,
+            status: Status::Ok,
+            steps: trace,
+            length: 0.1 * trace as f64,
+            max_length: 1e9,
+            depth: (trace % 4) as u32,
+            max_depth: 4,
+            wraps,
+            pull: None,
+            events: Vec::new(),
+        }
+    }
+
+    fn written(path: &Path, traces: impl Iterator<Item = u64>) -> PathBuf {
+        write_results(path, &traces.map(record).collect::<Vec<_>>()).unwrap();
+        path.to_owned()
+    }
+
+    fn rows(path: &Path) -> RecordBatch {
+        let builder = ParquetRecordBatchReaderBuilder::try_new(File::open(path).unwrap()).unwrap();
+        let mut batches = builder.with_batch_size(1 << 30).build().unwrap();
+        let rows = batches.next().unwrap().unwrap();
+        assert!(batches.next().is_none());
+        rows
+    }
+
+    #[test]
+    fn parts_are_the_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let whole = written(&at("whole.parquet"), 0..40_000);
+        // By blocks of 500, three in turn; and one without rows.
+        let block = |k: u64| move |trace: &u64| trace / 500 % 3 == k;
+        let parts: Vec<PathBuf> =
+            (0..3).map(|k| written(&at(&format!("{k}.parquet")), (0..40_000).filter(block(k)))).collect();
+        let none = written(&at("none.parquet"), 0..0);
+        let all = [&parts[2], &none, &parts[0], &parts[1]].map(Clone::clone);
+        merge_results(&all, &at("merged.parquet"), &[("a", "b".to_owned())]).unwrap();
+        assert!(rows(&at("merged.parquet")) == rows(&whole));
+        let twice = merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &[]).unwrap_err().to_string();
+        assert!(twice.ends_with("trace 500 is in another file too"), "{twice}");
+        assert!(!at("no.parquet").exists());
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let fails = |path: &Path| merge_results(&[path.to_owned()], &at("no.parquet"), &[]).unwrap_err().to_string();
+        assert!(fails(&at("gone.parquet")).contains("gone.parquet: No such file"));
+        std::fs::write(at("text.parquet"), "no table at all").unwrap();
+        assert!(fails(&at("text.parquet")).starts_with(&format!("cannot read {}", at("text.parquet").display())));
+        let mut writer = ResultWriter::create(&at("turned.parquet")).unwrap();
+        writer.write_all(&[2, 1].map(record)).unwrap();
+        writer.finish().unwrap();
+        assert!(fails(&at("turned.parquet")).ends_with("its rows are not in the order of their traces"));
+        crate::output::write_events(&at("events.parquet"), &[], &[]).unwrap();
+        assert!(fails(&at("events.parquet")).ends_with("its columns are not those of results"));
+    }
+}
