@@ -98,7 +98,9 @@ impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         match error {
             WriteError::Io { .. } => Failure::internal(error.into()),
-            WriteError::Extension { .. } | WriteError::Target { .. } => Failure::input(error.into()),
+            WriteError::Extension { .. } | WriteError::SceneExtension { .. } | WriteError::Target { .. } => {
+                Failure::input(error.into())
+            }
         }
     }
 }

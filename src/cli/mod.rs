@@ -4,6 +4,7 @@ mod adapters;
 mod batches;
 mod bench;
 mod check;
+mod convert;
 mod engine;
 pub(crate) mod environment;
 mod eval;
@@ -46,6 +47,8 @@ enum Command {
     Study(study::Args),
     /// Check a scene, and traces in it, without evaluating ropes
     Check(check::Args),
+    /// Write a scene of any format as GeoJSON or well-known text
+    Convert(convert::Args),
     /// Measure the throughput of all engines, side by side on the same walks
     Bench(bench::Args),
     /// List the GPUs that this machine offers
@@ -61,6 +64,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Eval(args) => eval::run(&args),
         Command::Study(args) => study::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Adapters(args) => adapters::run(&args),
     }));

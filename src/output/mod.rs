@@ -8,6 +8,7 @@ mod columns;
 mod events;
 mod results;
 mod rows;
+mod scene;
 mod tables;
 mod text;
 mod whole_file;
@@ -17,6 +18,7 @@ use std::path::Path;
 
 pub use events::{EventWriter, write_events};
 pub use results::{ResultWriter, write_results};
+pub use scene::write_scene;
 pub use whole_file::WholeFile;
 pub use write_error::WriteError;
 

@@ -4,6 +4,7 @@ use geojson::{Feature, GeoJson, Geometry, GeometryValue, JsonValue, Position};
 use glam::DVec2;
 
 use super::Scene;
+use super::lines::{push_line, push_ring};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
 
@@ -105,36 +106,14 @@ impl Found {
         Ok(())
     }
 
-    /// Adds the walls of one line string or ring.
+    /// Adds the walls of one line string.
     fn line(&mut self, positions: &[Position], place: &Place) -> Result<(), Fault> {
-        if positions.len() == 1 {
-            return Err(Fault::new(place.clone(), "one position only; a line needs two or more"));
-        }
-        let mut last = None;
-        for (i, position) in positions.iter().enumerate() {
-            let p = point_of(position).map_err(|what| Fault::new(place.then("position", i), what))?;
-            if let Some(last) = last {
-                self.walls.push([last, p]);
-            }
-            last = Some(p);
-        }
-        Ok(())
+        push_line(&mut self.walls, positions.iter().map(point_of), place)
     }
 
     fn polygon(&mut self, rings: &[Vec<Position>], place: &Place) -> Result<(), Fault> {
-        for (i, ring) in rings.iter().enumerate() {
-            let place = place.then("ring", i);
-            let from = self.walls.len();
-            self.line(ring, &place)?;
-            if let [Some([first, _]), Some([_, last])] = [self.walls.get(from), self.walls[from..].last()]
-                && first != last
-            {
-                let [first, last] = [first, last].map(|p| format!("[{:?}, {:?}]", p.x, p.y));
-                let what = format!("the ring is open: it starts at {first} and ends at {last}");
-                return Err(Fault::new(place, format!("{what}; the last position must repeat the first")));
-            }
-        }
-        Ok(())
+        let mut rings = rings.iter().enumerate();
+        rings.try_for_each(|(i, ring)| push_ring(&mut self.walls, ring.iter().map(point_of), &place.then("ring", i)))
     }
 }
 
@@ -142,8 +121,7 @@ fn point(position: &Position, place: &Place) -> Result<DVec2, Fault> {
     point_of(position).map_err(|what| Fault::new(place.clone(), what))
 }
 
-/// The position's x and y, or what is wrong with them. The caller adds the place: building it for every position
-/// would take longer than reading the position.
+/// The position's x and y, or what is wrong with them.
 fn point_of(position: &Position) -> Result<DVec2, String> {
     match position.as_slice() {
         [x, y, ..] => check_point(DVec2::new(*x, *y)).map_err(|fault| fault.to_string()),
@@ -254,7 +232,7 @@ mod tests {
     #[test]
     fn an_open_ring_is_named() {
         let ring = geometry("MultiPolygon", "[[[[0,0],[1,0],[0,0]],[[0,0],[1,0],[1,1]]]]");
-        let what = "the ring is open: it starts at [0.0, 0.0] and ends at [1.0, 1.0]";
+        let what = "the ring is open: it starts at (0, 0) and ends at (1, 1)";
         let expected = format!("feature 0, polygon 0, ring 1: {what}; the last position must repeat the first");
         assert_eq!(fault(&features(&[&ring])), expected);
     }

@@ -1,13 +1,22 @@
 //! What the user brings as the plane: walls, their ends, and the anchor.
 
+mod cells;
+mod curves;
+mod dxf;
+mod geographic;
 mod geojson;
 mod grid;
+mod image;
 mod index;
+mod lines;
 mod model;
 mod movingai;
 mod read;
+mod ros_map;
+mod svg;
+mod wkt;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use glam::DVec2;
 
@@ -15,7 +24,7 @@ use crate::geometry::{CoordinateFault, check_point};
 
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};
-pub use read::read_scene;
+pub use read::{SceneOptions, Unknown, read_scene, read_scene_with};
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.
 ///
@@ -26,6 +35,7 @@ pub struct Scene {
     walls: Vec<[u32; 2]>,
     anchor: Option<DVec2>,
     dropped: usize,
+    notes: Vec<String>,
 }
 
 impl Scene {
@@ -97,4 +107,26 @@ impl Scene {
     pub fn dropped(&self) -> usize {
         self.dropped
     }
+
+    /// What the reader of the scene's file has to say to its user: what a unit is, what was passed over, how closely walls
+    /// follow curves, and that degrees are no lengths. Sentences without a full stop.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn note(&mut self, note: impl Into<String>) {
+        self.notes.push(note.into());
+    }
+}
+
+/// Names with their counts, such as `3 image, 1 text`.
+fn listed(counts: &BTreeMap<&str, usize>) -> String {
+    let all: Vec<String> = counts.iter().map(|(name, count)| format!("{count} {name}")).collect();
+    all.join(", ")
+}
+
+/// The start of `text`: a line of some other file may be very long.
+fn excerpt(text: &str) -> String {
+    let start: String = text.chars().take(40).collect();
+    if start.len() < text.len() { start + "..." } else { start }
 }

@@ -49,7 +49,7 @@ fn faults_in_geojson_name_feature_and_position() {
     let small = ["s.geojson: feature 1, position 0: 1e-200 is too small", "0 or at least 2^-450"];
     refused("s.geojson", &second_feature("LineString", "[[0, 1e-200], [1, 0]]"), &small);
     let open = [
-        "s.geojson: feature 1, ring 0: the ring is open: it starts at [1.0, 1.0] and ends at [2.0, 2.0]",
+        "s.geojson: feature 1, ring 0: the ring is open: it starts at (1, 1) and ends at (2, 2)",
         "the last position must repeat the first",
     ];
     refused("s.geojson", &second_feature("Polygon", "[[[1, 1], [2, 1], [2, 2]]]"), &open);
