@@ -3,8 +3,8 @@
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, JsonValue, Position};
 use glam::DVec2;
 
-use super::Scene;
 use super::lines::{push_line, push_ring};
+use super::{Scene, geographic};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
 
@@ -15,6 +15,7 @@ use crate::read_error::{Fault, Place};
 pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     let document: GeoJson = serde_json::from_str(text).map_err(|e| syntax_fault(&e))?;
     let mut found = Found::default();
+    let degrees = is_in_degrees(&document);
     match document {
         GeoJson::FeatureCollection(collection) => {
             for (i, feature) in collection.features.iter().enumerate() {
@@ -24,11 +25,22 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
         GeoJson::Feature(feature) => found.feature(&feature, 0)?,
         GeoJson::Geometry(geometry) => found.geometry(&geometry, &Place::default(), None)?,
     }
-    let scene = Scene::new(found.walls)?;
-    Ok(match found.anchor {
-        Some((anchor, _)) => scene.with_anchor(anchor),
-        None => scene,
-    })
+    let mut scene = Scene::new(found.walls)?;
+    if let Some((anchor, _)) = found.anchor {
+        scene = scene.with_anchor(anchor);
+    }
+    if degrees.unwrap_or_else(|| geographic::looks_so(scene.vertices())) {
+        scene.note(geographic::WARNING);
+    }
+    Ok(scene)
+}
+
+/// What the document's `crs` says, as files have it that were written by GDAL or before RFC 7946.
+fn is_in_degrees(document: &GeoJson) -> Option<bool> {
+    let GeoJson::FeatureCollection(collection) = document else { return None };
+    let crs = collection.foreign_members.as_ref()?.get("crs")?;
+    let name = crs.pointer("/properties/name")?.as_str()?;
+    Some(["CRS84", "CRS84h", "4326", "4979"].iter().any(|code| name.rsplit(':').next() == Some(code)))
 }
 
 /// Moves the place out of the parser's message to where all messages have it.

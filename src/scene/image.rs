@@ -98,6 +98,8 @@ fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
             fill(&mut bits, y * width, pixels(row.data()).into_iter(), &mut set);
         }
     }
+    // What ends before its end may have lost more than that.
+    reader.finish().map_err(wrong)?;
     Ok(bits)
 }
 

@@ -241,3 +241,131 @@ fn push(values: &mut Vec<(String, Value)>, key: String, value: Value) -> Result<
     values.push((key, value));
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MAP: &str = "image: map.pgm\nresolution: 0.05\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n\
+        free_thresh: 0.196\n";
+
+    fn fault(text: &str) -> String {
+        let fault = parse(text).unwrap_err();
+        format!("{}: {}", fault.place, fault.what)
+    }
+
+    /// The walls of an image of this size for these values of the map.
+    fn scene(text: &str, pgm: &[u8], unknown: Unknown) -> Scene {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("map.pgm"), pgm).unwrap();
+        let path = folder.path().join("map.yaml");
+        std::fs::write(&path, text).unwrap();
+        read(&path, unknown).unwrap()
+    }
+
+    fn walls(scene: &Scene) -> Vec<[f64; 4]> {
+        (0..scene.walls().len()).map(|w| scene.ends(w)).map(|[a, b]| [a.x, a.y, b.x, b.y]).collect()
+    }
+
+    #[test]
+    fn the_lower_left_corner_is_the_origin_and_y_points_up() {
+        // Two columns, three rows; the upper left cell is occupied.
+        let pgm = b"P5 2 3 255\n\x00\xfe\xfe\xfe\xfe\xfe";
+        let text = MAP.replace("0.05", "0.5");
+        assert_eq!(walls(&scene(&text, pgm, Unknown::Free)), [[-1.0, 3.0, -0.5, 3.0], [-0.5, 3.5, -0.5, 3.0]]);
+        // Turned by a quarter, to the left of the origin.
+        let turned = text.replace(", 0.0]", ", 1.5707963267948966]");
+        let found = walls(&scene(&turned, pgm, Unknown::Free));
+        for (wall, right) in found.iter().zip([[-2.0, 2.0, -2.0, 2.5], [-2.5, 2.5, -2.0, 2.5]]) {
+            assert!(wall.iter().zip(right).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn unknown_cells_are_counted_and_as_is_asked() {
+        // Free, unknown, occupied.
+        let pgm = b"P2 3 1 255 254 205 0";
+        let free = scene(MAP, pgm, Unknown::Free);
+        let blocked = scene(MAP, pgm, Unknown::Blocked);
+        assert_eq!((walls(&free)[0][0], walls(&blocked)[0][0]), (-1.0 + 0.1, -1.0 + 0.05));
+        assert_eq!(
+            free.notes(),
+            ["a unit is 1 m; y points up", "1 unknown cells are no obstacles (--unknown blocked for the other way)"]
+        );
+        assert_eq!(blocked.notes()[1], "1 unknown cells are obstacles (--unknown free for the other way)");
+        assert_eq!(scene(MAP, b"P2 1 1 255 254", Unknown::Free).notes().len(), 1);
+    }
+
+    #[test]
+    fn modes_and_thresholds_are_those_of_the_map_server() {
+        use Cell::{Occupied, Other, Unknown};
+        let cell = |text: &str, shade: u8, alpha: Option<(f64, f64)>| {
+            parse(text).unwrap().cell(Pixel { shade: f64::from(shade) / 255.0, alpha })
+        };
+        let all = |text: &str| [0, 89, 90, 100, 101, 205, 206, 254].map(|shade| cell(text, shade, None));
+        // Above 0.65: up to 89 of 255; below 0.196: from 206 on.
+        assert_eq!(all(MAP), [Occupied, Occupied, Unknown, Unknown, Unknown, Unknown, Other, Other]);
+        let negate = MAP.replace("negate: 0", "negate: 1");
+        assert_eq!(all(&negate), [Other, Unknown, Unknown, Unknown, Unknown, Occupied, Occupied, Occupied]);
+        assert_eq!(all(&MAP.replace("negate: 0", "negate: true")), all(&negate));
+        let scale = format!("{MAP}mode: scale\n");
+        assert_eq!(all(&scale), [Occupied, Occupied, Other, Other, Other, Other, Other, Other]);
+        let raw = format!("{MAP}mode: raw\n");
+        assert_eq!(all(&raw), [Other, Other, Other, Occupied, Unknown, Unknown, Unknown, Unknown]);
+        assert_eq!(cell(&scale, 0, Some((0.5, 1.0))), Unknown);
+        assert_eq!(cell(&scale, 0, Some((1.0, 1.0))), Occupied);
+        // Alpha counts as a colour in the mode trinary: black is half as dark in grey.
+        assert_eq!([cell(MAP, 0, Some((1.0, 3.0))), cell(MAP, 0, Some((1.0, 1.0)))], [Occupied, Unknown]);
+    }
+
+    #[test]
+    fn files_of_either_ros_are_read() {
+        let map = parse(MAP).unwrap();
+        assert_eq!((map.resolution, map.origin, map.mode), (0.05, DVec2::new(-1.0, 2.0), Mode::Trinary));
+        let other = "# saved\n---\nmode: trinary\nfree_thresh: 0.196\nimage: 'map.pgm'\nresolution: 5e-2\nnegate: 0\n\
+            origin:\n  - -1\n  - 2.0\n  - 0\noccupied_thresh: 0.65\nextra: {a: [1, {b: 2}], c: d}\nlast: x\n...\n";
+        assert_eq!(parse(other).unwrap(), map);
+    }
+
+    #[test]
+    fn faults_name_line_and_key() {
+        let with = |from: &str, to: &str| fault(&MAP.replace(from, to));
+        for (what, expected) in [
+            (fault(""), ": no image; a map needs image, resolution, origin, negate, occupied_thresh, free_thresh"),
+            (with("negate: 0\n", ""), ": no negate; a map needs image, resolution, origin, negate"),
+            (with("0.05", "-1"), "line 2: resolution is \"-1\"; it must be a number of metres a pixel, above 0"),
+            (with("0.05", ".nan"), "line 2: resolution is \".nan\"; it must be a number"),
+            (with("0.05", "inf"), "line 2: resolution is \"inf\"; it must be a number"),
+            (with("0.05", "[1]"), "line 2: resolution is \"[1]\"; it must be a number"),
+            (with("[-1.0, 2.0, 0.0]", "[1, 2]"), "line 3: origin is \"[1, 2]\"; it must be three numbers, [x, y, yaw]"),
+            (with("negate: 0", "negate: 2"), "line 4: negate is \"2\"; it must be 0 or 1"),
+            (with("0.196", "1.5"), "line 6: free_thresh is \"1.5\"; it must be a number from 0 to 1"),
+            (with("map.pgm", "~"), "line 1: image is \"\"; it must be the name of a .png or .pgm file"),
+            (fault(&format!("{MAP}mode: best\n")), "line 7: mode is \"best\"; it must be trinary, scale or raw"),
+            (fault(&format!("{MAP}negate: 0\n")), "line 7: negate a second time"),
+            (with("negate: 0", "a: &b 1\nnegate: *b"), "line 5: an alias (*); write the value out"),
+            (fault("- 1\n"), "line 1: a list; a map is written as lines of a key and its value"),
+            (fault("walls"), "line 1: no map; a map is written as lines"),
+            (fault("a: [1\nb"), "not YAML: "),
+        ] {
+            assert!(what.contains(expected), "{what} is not {expected}");
+        }
+    }
+
+    #[test]
+    fn the_image_is_named_if_it_is_at_fault() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.yaml");
+        std::fs::write(&path, MAP).unwrap();
+        let e = read(&path, Unknown::Free).unwrap_err().to_string();
+        assert!(e.starts_with("cannot read ") && e.contains("map.pgm: No such file"), "{e}");
+        std::fs::write(folder.path().join("map.pgm"), b"P5 1000000000 1000000000 255\n").unwrap();
+        let e = read(&path, Unknown::Free).unwrap_err().to_string();
+        assert!(e.contains("map.pgm: 1000000000 x 1000000000 pixels; each side must have from 1 to 32768"), "{e}");
+        // Noise has more borders than a map.
+        let noise: Vec<u8> = (0..3000 * 3000).map(|i| if (i % 3000 + i / 3000) % 2 == 0 { 0 } else { 254 }).collect();
+        std::fs::write(folder.path().join("map.pgm"), [b"P5 3000 3000 255\n", &noise[..]].concat()).unwrap();
+        let e = read(&path, Unknown::Free).unwrap_err().to_string();
+        assert!(e.contains("map.pgm: more than 8388608 walls"), "{e}");
+    }
+}

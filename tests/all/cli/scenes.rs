@@ -28,7 +28,11 @@ fn files_that_are_not_there_or_not_known() {
     folder.refused(2, &eval("no.map"), &["cannot read no.map", "No such file"]);
     for name in ["s.shp", "s"] {
         folder.write(name, "walls");
-        folder.refused(2, &eval(name), &[&format!("{name}: the extension"), "scenes", ".geojson, .json, .map"]);
+        folder.refused(
+            2,
+            &eval(name),
+            &[&format!("{name}: the extension"), "scenes", ".geojson, .json, .wkt, .svg, .dxf, .map, .yaml, .yml"],
+        );
     }
     std::fs::create_dir(folder.path("folder.json")).unwrap();
     folder.refused(2, &eval("folder.json"), &["cannot read folder.json", "directory"]);
