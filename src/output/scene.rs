@@ -13,7 +13,7 @@ use crate::scene::Scene;
 /// Writes `scene` to `path`: `.geojson` or `.json` as GeoJSON, `.wkt` as well-known text.
 ///
 /// Reading the file gives the same walls in the same order and direction, the same vertex numbers and the same anchor, bit
-/// for bit. Walls that follow each other are one line string. What the scene's reader noted is not written. The file is
+/// for bit. GeoJSON keeps whether y points down, too, as a member of its own. Walls that follow each other are one line string. What the scene's reader noted is not written. The file is
 /// whole or not there at all.
 ///
 /// # Errors
@@ -58,7 +58,8 @@ fn lines(scene: &Scene) -> Vec<Vec<DVec2>> {
 }
 
 fn geojson(out: &mut WholeFile, scene: &Scene) -> io::Result<()> {
-    out.write_all(b"{\"type\":\"FeatureCollection\",\"features\":[\n")?;
+    let y = if scene.y_down() { "\"y\":\"down\"," } else { "" };
+    writeln!(out, "{{\"type\":\"FeatureCollection\",{y}\"features\":[")?;
     out.write_all(
         b"{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"MultiLineString\",\"coordinates\":[",
     )?;

@@ -2,7 +2,7 @@
 //!
 //! Pictures are made of a [`Summary`] and the [`Scene`] it is about, and of nothing else: the same ones give the same
 //! bytes. Each stands on its own white ground, with names of what it shows and the unit. Colours stay apart for
-//! colour-blind eyes.
+//! colour-blind eyes. Where a scene has y point down, so have its pictures, and left and right are as one sees them.
 
 mod chart;
 mod colour;

@@ -9,7 +9,7 @@ use glam::{DAffine2, DVec2};
 
 use crate::geometry::{CoordinateFault, check_point};
 
-/// Without a tolerance, walls lie within the drawing's longer side divided by this of their curves.
+/// Without a tolerance, walls lie within the drawing's longer side divided by this, to three digits, of their curves.
 const PARTS_OF_SIDE: f64 = 2000.0;
 
 /// How many walls all curves of a drawing may become.
@@ -94,7 +94,9 @@ impl Flattened {
     /// A sentence about the curves, if there are any.
     pub(super) fn note(&self) -> Option<String> {
         let Flattened { curves, tolerance, .. } = self;
-        (*curves > 0).then(|| format!("{curves} curves became walls within {tolerance} of them (--flatten)"))
+        (*curves > 0).then(|| {
+            format!("walls lie within {tolerance} of the curves that they stand for (--flatten); curves: {curves}")
+        })
     }
 }
 
@@ -138,7 +140,7 @@ impl Outlines {
     /// A tolerance for which there would be too many walls.
     pub(super) fn flatten(&self, tolerance: Option<f64>) -> Result<Flattened, String> {
         let side = self.bounds().map_or(0.0, |[low, high]| (high - low).max_element());
-        let tolerance = tolerance.unwrap_or((side / PARTS_OF_SIDE).max(f64::MIN_POSITIVE));
+        let tolerance = tolerance.unwrap_or_else(|| rounded(side / PARTS_OF_SIDE));
         let mut walls = Vec::with_capacity(self.pieces.len());
         let (mut here, mut curves, mut curved) = (DVec2::ZERO, 0, 0.0);
         for piece in &self.pieces {
@@ -169,6 +171,11 @@ impl Outlines {
         }
         Ok(Flattened { walls, curves, tolerance })
     }
+}
+
+/// `x` to three digits, as people are told it; above zero.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x).max(f64::MIN_POSITIVE)
 }
 
 impl Curve {

@@ -11,11 +11,12 @@ use crate::read_error::{Fault, Place};
 /// Reads a FeatureCollection, a Feature or a bare geometry.
 ///
 /// LineString, MultiLineString, Polygon and MultiPolygon give one wall for each pair of consecutive positions; points
-/// that are no anchor are passed over. Further numbers of a position (its altitude) are passed over too.
+/// that are no anchor are passed over. The member `"y": "down"` of a FeatureCollection says so. Further numbers of a position (its altitude) are passed over too.
 pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     let document: GeoJson = serde_json::from_str(text).map_err(|e| syntax_fault(&e))?;
     let mut found = Found::default();
     let degrees = is_in_degrees(&document);
+    let y_down = member(&document, "y").and_then(JsonValue::as_str) == Some("down");
     match document {
         GeoJson::FeatureCollection(collection) => {
             for (i, feature) in collection.features.iter().enumerate() {
@@ -32,14 +33,18 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     if degrees.unwrap_or_else(|| geographic::looks_so(scene.vertices())) {
         scene.note(geographic::WARNING);
     }
-    Ok(scene)
+    Ok(if y_down { scene.with_y_down() } else { scene })
+}
+
+/// A member of a FeatureCollection that GeoJSON does not define.
+fn member<'a>(document: &'a GeoJson, name: &str) -> Option<&'a JsonValue> {
+    let GeoJson::FeatureCollection(collection) = document else { return None };
+    collection.foreign_members.as_ref()?.get(name)
 }
 
 /// What the document's `crs` says, as files have it that were written by GDAL or before RFC 7946.
 fn is_in_degrees(document: &GeoJson) -> Option<bool> {
-    let GeoJson::FeatureCollection(collection) = document else { return None };
-    let crs = collection.foreign_members.as_ref()?.get("crs")?;
-    let name = crs.pointer("/properties/name")?.as_str()?;
+    let name = member(document, "crs")?.pointer("/properties/name")?.as_str()?;
     Some(["CRS84", "CRS84h", "4326", "4979"].iter().any(|code| name.rsplit(':').next() == Some(code)))
 }
 

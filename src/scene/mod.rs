@@ -35,6 +35,7 @@ pub struct Scene {
     walls: Vec<[u32; 2]>,
     anchor: Option<DVec2>,
     dropped: usize,
+    y_down: bool,
     notes: Vec<String>,
 }
 
@@ -83,6 +84,13 @@ impl Scene {
         self
     }
 
+    /// The same scene, looked at with y pointing down. Its coordinates stay as they are.
+    #[must_use]
+    pub fn with_y_down(mut self) -> Self {
+        self.y_down = true;
+        self
+    }
+
     /// The ends of all walls, each once.
     pub fn vertices(&self) -> &[DVec2] {
         &self.vertices
@@ -101,6 +109,12 @@ impl Scene {
     /// The anchor that the scene's file marks, if it marks one.
     pub fn anchor(&self) -> Option<DVec2> {
         self.anchor
+    }
+
+    /// Whether y points down when the scene is looked at as its file means it: pictures show it so. Nothing is computed
+    /// otherwise for it; left and right are those of a reader for whom y points up.
+    pub fn y_down(&self) -> bool {
+        self.y_down
     }
 
     /// How many walls of zero length were dropped.

@@ -81,7 +81,7 @@ pub(super) fn read(path: &Path, unknown: Unknown) -> Result<Scene, ReadError> {
             Unknown::Free => ("no obstacles", "blocked"),
             Unknown::Blocked => ("obstacles", "free"),
         };
-        scene.note(format!("{unknowns} unknown cells are {are} (--unknown {other} for the other way)"));
+        scene.note(format!("unknown cells, which are {are} (the other way: --unknown {other}): {unknowns}"));
     }
     Ok(scene)
 }
@@ -290,9 +290,12 @@ mod tests {
         assert_eq!((walls(&free)[0][0], walls(&blocked)[0][0]), (-1.0 + 0.1, -1.0 + 0.05));
         assert_eq!(
             free.notes(),
-            ["a unit is 1 m; y points up", "1 unknown cells are no obstacles (--unknown blocked for the other way)"]
+            [
+                "a unit is 1 m; y points up",
+                "unknown cells, which are no obstacles (the other way: --unknown blocked): 1"
+            ]
         );
-        assert_eq!(blocked.notes()[1], "1 unknown cells are obstacles (--unknown free for the other way)");
+        assert_eq!(blocked.notes()[1], "unknown cells, which are obstacles (the other way: --unknown free): 1");
         assert_eq!(scene(MAP, b"P2 1 1 255 254", Unknown::Free).notes().len(), 1);
     }
 

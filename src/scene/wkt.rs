@@ -208,7 +208,7 @@ impl<'a> Statements<'a> {
             // A last EMPTY, or no geometry at all, which the parser says.
             return Ok(rest.len());
         }
-        fault(format!("the file ends inside of this geometry; {depth} parentheses are open: {:?}", excerpt(rest)))
+        fault(format!("the file ends inside of this geometry; open parentheses: {depth}: {:?}", excerpt(rest)))
     }
 }
 
@@ -321,7 +321,7 @@ mod tests {
             ("LINESTRING (0 0, 1 1))", "line 1: not WKT: "),
             ("LINESTRING (0 0 0, 1 1 1)", "line 1: not WKT: "),
             ("LINESTRING (0,0 1,1)", "line 1: not WKT: "),
-            ("\nLINESTRING (0 0, 1 1", "line 2: the file ends inside of this geometry; 1 parentheses are open"),
+            ("\nLINESTRING (0 0, 1 1", "line 2: the file ends inside of this geometry; open parentheses: 1"),
             ("CIRCULARSTRING (0 0, 1 1, 2 0)", "line 1: not WKT: Invalid type"),
             ("é", "line 1: not WKT: "),
         ] {

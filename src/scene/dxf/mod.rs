@@ -136,7 +136,7 @@ impl<'a> Reader<'a> {
         scene.note(self.unit.unwrap_or_else(|| "the drawing does not say what a unit is (no $INSUNITS)".into()));
         note.into_iter().for_each(|note| scene.note(note));
         if self.hidden > 0 {
-            scene.note(format!("{} hidden entities are no walls", self.hidden));
+            scene.note(format!("hidden entities, which are no walls: {}", self.hidden));
         }
         if !self.passed.is_empty() {
             scene.note(format!("passed over: {}", listed(&self.passed)));

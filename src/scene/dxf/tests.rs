@@ -121,7 +121,7 @@ fn hidden_things_are_no_walls_and_others_are_counted() {
     assert_eq!(scene.walls().len(), 3);
     let notes = [
         "the drawing does not say what a unit is (no $INSUNITS)",
-        "4 hidden entities are no walls",
+        "hidden entities, which are no walls: 4",
         "passed over: 1 HATCH, 2 TEXT",
     ];
     assert_eq!(scene.notes(), notes);

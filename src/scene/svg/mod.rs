@@ -17,7 +17,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use svgtypes::{AspectRatio, Length, LengthUnit, ViewBox};
 
 use super::curves::Outlines;
-use super::{Scene, listed};
+use super::{Scene, excerpt, listed};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
 use shapes::{Along, Shape, pixels};
@@ -125,7 +125,7 @@ fn viewport_of(root: Node<'_, '_>) -> Result<(Option<DVec2>, String), String> {
 }
 
 fn view_box(node: Node<'_, '_>) -> Result<Option<ViewBox>, String> {
-    let parse = |text| ViewBox::from_str(text).map_err(|e| format!("viewBox is {text:?}: {e}"));
+    let parse = |text| ViewBox::from_str(text).map_err(|e| format!("viewBox is {:?}: {e}", excerpt(text)));
     node.attribute("viewBox").map(parse).transpose()
 }
 
@@ -176,17 +176,17 @@ impl<'a, 'i> Reader<'a, 'i> {
     fn scene(self, flatten: Option<f64>, unit: &str) -> Result<Scene, Fault> {
         let flat = self.outlines.flatten(flatten).map_err(|what| Fault::new(Place::default(), what))?;
         let note = flat.note();
-        let mut scene = Scene::new(flat.walls)?;
+        let mut scene = Scene::new(flat.walls)?.with_y_down();
         if let Some((anchor, _)) = self.anchor {
             scene = scene.with_anchor(anchor);
         }
         scene.note(format!("{unit}; y points down, as in the file"));
         note.into_iter().for_each(|note| scene.note(note));
         if self.hidden > 0 {
-            scene.note(format!("{} hidden elements are no walls", self.hidden));
+            scene.note(format!("hidden elements, which are no walls: {}", self.hidden));
         }
         if self.clipped > 0 {
-            scene.note(format!("clip paths and masks cut no walls: {} elements are taken whole", self.clipped));
+            scene.note(format!("clip paths and masks cut no walls; elements taken whole: {}", self.clipped));
         }
         if !self.passed.is_empty() {
             scene.note(format!("passed over: {}", listed(&self.passed)));
@@ -299,7 +299,7 @@ impl<'a, 'i> Reader<'a, 'i> {
             return Err(fault("names nothing to use; it needs href=\"#id\"".into()));
         };
         let Some(id) = href.strip_prefix('#') else {
-            return Err(fault(format!("uses {href:?} of another file; copy it into this one")));
+            return Err(fault(format!("uses {:?} of another file; copy it into this one", excerpt(href))));
         };
         let Some(&target) = self.ids.get(id) else {
             return Err(fault(format!("uses the element {id:?}, which the file does not have")));

@@ -7,6 +7,7 @@ use roxmltree::Node;
 use svgtypes::{Length, LengthUnit, NumberListParser};
 
 use super::super::curves::{Ellipse, Pen};
+use super::super::excerpt;
 use super::path;
 
 /// What a percentage is a part of.
@@ -107,7 +108,7 @@ impl Shape<'_, '_> {
             return Ok(None);
         };
         let length = Length::from_str(text)
-            .map_err(|_| format!("{name} is {text:?}; it must be a length such as 12.5, 12.5mm or 50%"))?;
+            .map_err(|_| format!("{name} is {:?}; it must be a length such as 12.5, 12.5mm or 50%", excerpt(text)))?;
         Ok(Some(match length.unit {
             LengthUnit::Percent => {
                 let all = self.viewport.ok_or_else(|| format!("{name} is {text:?}, but of what is not known"))?;

@@ -46,8 +46,8 @@ fn what_is_hidden_or_no_shape_is_told_of() {
     assert_eq!(scene.walls().len(), 2);
     let expected = [
         "units are those of the viewBox; y points down, as in the file",
-        "2 hidden elements are no walls",
-        "clip paths and masks cut no walls: 2 elements are taken whole",
+        "hidden elements, which are no walls: 2",
+        "clip paths and masks cut no walls; elements taken whole: 2",
         "passed over: 1 flowRoot, 1 image, 2 text",
     ];
     assert_eq!(scene.notes(), expected);

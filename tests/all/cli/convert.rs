@@ -12,13 +12,13 @@ fn a_drawing_becomes_geojson_and_well_known_text() {
     let done = folder.done("convert --flatten 0.1 p.svg p.geojson");
     assert_eq!(done.stdout, "p.geojson: 16 walls, 16 vertices, anchor (2, 0.1)\n");
     let notes = "note: p.svg: a unit is 1 mm (the drawing is 20 mm wide, its viewBox 20); y points down, as in the file\n\
-        note: p.svg: 1 curves became walls within 0.1 of them (--flatten)\n";
+        note: p.svg: walls lie within 0.1 of the curves that they stand for (--flatten); curves: 1\n";
     assert_eq!(done.stderr, notes);
     assert_eq!(folder.done("convert p.geojson p.wkt").stderr, "");
     assert_eq!(folder.done("convert p.wkt q.json").stdout, "q.json: 16 walls, 16 vertices, anchor (2, 0.1)\n");
     assert_eq!(folder.text("p.geojson"), folder.text("q.json"));
     // A finer drawing has more walls, and a file without an anchor none.
-    assert!(folder.done("convert p.svg p.json --flatten 0.001").stdout.starts_with("p.json: 76 walls"));
+    assert!(folder.done("convert p.svg p.json --flatten 0.001").stdout.starts_with("p.json: 104 walls"));
     folder.write("m.map", "type octile\nheight 1\nwidth 2\nmap\n.@\n");
     assert_eq!(folder.done("convert m.map m.wkt").stdout, "m.wkt: 1 walls, 2 vertices, no anchor\n");
     assert_eq!(folder.text("m.wkt"), "LINESTRING (1.0 0.0, 1.0 1.0)\n");

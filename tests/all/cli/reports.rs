@@ -112,7 +112,7 @@ fn check_refuses_what_eval_refuses() {
     let folder = Folder::hand_made();
     folder.write("v.csv", "trace,x,y\n3,1,0\n3,5,0\n");
     folder.refused(2, "check --scene s.geojson --traces v.csv", &["v.csv: trace 3, step 1: ", "crosses wall 0"]);
-    folder.refused(2, "check --scene s.wkb", &["s.wkb", ".geojson, .json, .map"]);
+    folder.refused(2, "check --scene s.wkb", &["s.wkb", ".geojson, .json, .wkt, .svg, .dxf, .map, .yaml, .yml"]);
     folder.refused(2, "check --traces t.csv", &["--traces needs --scene"]);
     folder.refused(2, "check --scene s.geojson --anchor 3,1", &["inside wall 0"]);
 }
