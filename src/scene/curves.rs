@@ -7,7 +7,7 @@
 
 use glam::{DAffine2, DVec2};
 
-use crate::geometry::{CoordinateFault, check_point};
+use super::pen::Pen;
 
 /// Without a tolerance, walls lie within the drawing's longer side divided by this, to three digits, of their curves.
 const PARTS_OF_SIDE: f64 = 2000.0;
@@ -18,11 +18,12 @@ const WALLS_MAX: f64 = 4_194_304.0;
 /// Lines and curves in the scene's coordinates.
 #[derive(Debug, Default)]
 pub(super) struct Outlines {
-    pieces: Vec<Piece>,
+    pub(super) pieces: Vec<Piece>,
 }
 
+/// A part of a drawing, in the scene's coordinates.
 #[derive(Debug)]
-enum Piece {
+pub(super) enum Piece {
     /// A line of its own begins here.
     Start(DVec2),
     /// Straight from where the last piece ends.
@@ -31,8 +32,9 @@ enum Piece {
     Curve(Box<Curve>, DVec2),
 }
 
+/// A curve that is to become walls.
 #[derive(Debug)]
-enum Curve {
+pub(super) enum Curve {
     /// The control points, both ends included.
     Bezier(Vec<DVec2>),
     Ellipse(Ellipse),
@@ -103,7 +105,7 @@ impl Flattened {
 impl Outlines {
     /// A pen that draws here what it is told in other coordinates.
     pub(super) fn pen(&mut self, transform: DAffine2) -> Pen<'_> {
-        Pen { outlines: self, transform, first: DVec2::ZERO, here: DVec2::ZERO, size: 0.0 }
+        Pen::new(self, transform)
     }
 
     /// How many lines and curves there are.
@@ -214,105 +216,9 @@ impl Curve {
     }
 }
 
-/// Draws into [`Outlines`]. All points are in the pen's own coordinates; curves go from where the last piece ended.
-pub(super) struct Pen<'a> {
-    outlines: &'a mut Outlines,
-    transform: DAffine2,
-    /// Where the line began, where it is, and its largest coordinate so far, all in the scene's coordinates.
-    first: DVec2,
-    here: DVec2,
-    size: f64,
-}
-
-/// What drawing says of coordinates that cannot be computed with.
-pub(super) type Drawn = Result<(), CoordinateFault>;
-
-impl Pen<'_> {
-    /// The scene's coordinates of `p`.
-    fn place(&self, p: DVec2) -> Result<DVec2, CoordinateFault> {
-        check_point(self.transform.transform_point2(p))
-    }
-
-    fn go(&mut self, to: DVec2) {
-        self.here = to;
-        self.size = self.size.max(to.abs().max_element());
-    }
-
-    pub(super) fn start(&mut self, at: DVec2) -> Drawn {
-        let at = self.place(at)?;
-        self.outlines.pieces.push(Piece::Start(at));
-        (self.first, self.size) = (at, 0.0);
-        self.go(at);
-        Ok(())
-    }
-
-    pub(super) fn line_to(&mut self, to: DVec2) -> Drawn {
-        let to = self.place(to)?;
-        self.outlines.pieces.push(Piece::Line(to));
-        self.go(to);
-        Ok(())
-    }
-
-    /// A Bezier curve by the control points `inner` to `to`.
-    pub(super) fn bezier_to(&mut self, inner: &[DVec2], to: DVec2) -> Drawn {
-        let mut points = vec![self.here];
-        for p in inner {
-            points.push(self.place(*p)?);
-        }
-        let to = self.place(to)?;
-        points.push(to);
-        self.outlines.pieces.push(Piece::Curve(Box::new(Curve::Bezier(points)), to));
-        self.go(to);
-        Ok(())
-    }
-
-    /// An arc that begins where the pen is and ends at `to`, whatever rounding makes of its own ends.
-    pub(super) fn ellipse_to(&mut self, arc: Ellipse, to: DVec2) -> Drawn {
-        let to = self.place(to)?;
-        let [a, b] = [arc.a, arc.b].map(|v| self.transform.transform_vector2(v));
-        let arc = Ellipse { centre: self.place(arc.centre)?, a: check_point(a)?, b: check_point(b)?, ..arc };
-        self.outlines.pieces.push(Piece::Curve(Box::new(Curve::Ellipse(arc)), to));
-        self.go(to);
-        Ok(())
-    }
-
-    /// A whole ellipse.
-    pub(super) fn ellipse(&mut self, centre: DVec2, a: DVec2, b: DVec2) -> Drawn {
-        self.start(centre + a)?;
-        self.ellipse_to(Ellipse { centre, a, b, from: 0.0, sweep: 360.0 }, centre + a)
-    }
-
-    /// An open or closed line through `points`.
-    pub(super) fn polyline(&mut self, points: &[DVec2], closed: bool) -> Drawn {
-        let [first, rest @ ..] = points else { return Ok(()) };
-        self.start(*first)?;
-        for p in rest {
-            self.line_to(*p)?;
-        }
-        if closed {
-            self.close();
-        }
-        Ok(())
-    }
-
-    /// Straight back to where the line began, unless it is there. A line that misses its beginning by no more than the
-    /// roundings of relative coordinates (2^-40 of its largest coordinate) ends on it, without a tiny wall in between.
-    pub(super) fn close(&mut self) {
-        let first = self.first;
-        let missed = (self.here - first).abs().max_element();
-        if let Some(Piece::Line(end) | Piece::Curve(_, end)) = self.outlines.pieces.last_mut()
-            && missed <= self.size * 2f64.powi(-40)
-        {
-            *end = first;
-        } else if missed > 0.0 {
-            self.outlines.pieces.push(Piece::Line(first));
-        }
-        self.here = first;
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::pen::Drawn;
     use super::*;
 
     fn p(x: f64, y: f64) -> DVec2 {
@@ -376,17 +282,6 @@ mod tests {
         // The quarters are points of it, as exact as sums are.
         for q in [p(0.1, 0.2 + 0.3), p(0.1 - 0.3, 0.2), p(0.1, 0.2 - 0.3)] {
             assert!(walls.iter().any(|w| w[0] == q), "{q}");
-        }
-    }
-
-    #[test]
-    fn a_line_that_misses_its_beginning_by_rounding_ends_on_it() {
-        for (last, count) in [(p(0.3, 0.1 + 1e-16), 3), (p(0.3, 0.1), 3), (p(0.3, 0.1 + 1e-9), 4)] {
-            let mut outlines = Outlines::default();
-            outlines.pen(DAffine2::IDENTITY).polyline(&[p(0.3, 0.1), p(1.0, 0.0), p(1.0, 1.0), last], true).unwrap();
-            let walls = outlines.flatten(None).unwrap().walls;
-            assert_eq!(walls.len(), count);
-            assert_eq!(walls[count - 1][1], walls[0][0]);
         }
     }
 

@@ -11,6 +11,7 @@ mod index;
 mod lines;
 mod model;
 mod movingai;
+mod pen;
 mod read;
 mod ros_map;
 mod svg;

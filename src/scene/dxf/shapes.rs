@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::super::curves::{Drawn, Ellipse, Pen};
+use super::super::curves::Ellipse;
+use super::super::pen::{Drawn, Pen};
 use super::entity::Entity;
 use super::spline::beziers;
 use crate::read_error::Fault;
@@ -76,7 +77,7 @@ fn turn(from: f64, to: f64) -> f64 {
     let turn = (to - from) % 360.0;
     let turn = if turn <= 0.0 { turn + 360.0 } else { turn };
     // Angles in radians seldom make a whole turn to the last bit.
-    if turn > 360.0 - 1e-9 || turn < 1e-9 { 360.0 } else { turn }
+    if (1e-9..360.0 - 1e-9).contains(&turn) { turn } else { 360.0 }
 }
 
 /// An arc alone; one of a whole turn ends where it begins.

@@ -4,6 +4,7 @@
 //! and SVG's own notations are those that `usvg` stands on. `usvg` itself computes in f32 and passes over what it cannot
 //! read, so the tree is walked here.
 
+mod page;
 mod path;
 mod shapes;
 mod style;
@@ -14,13 +15,14 @@ use std::str::FromStr;
 
 use glam::{DAffine2, DVec2};
 use roxmltree::{Document, Node, ParsingOptions};
-use svgtypes::{AspectRatio, Length, LengthUnit, ViewBox};
+use svgtypes::AspectRatio;
 
 use super::curves::Outlines;
 use super::{Scene, excerpt, listed};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
-use shapes::{Along, Shape, pixels};
+use page::{view_box, viewport_of};
+use shapes::{Along, Shape};
 use style::Styles;
 
 const SVG: &str = "http://www.w3.org/2000/svg";
@@ -93,40 +95,6 @@ fn fault_at(node: Node<'_, '_>, what: &str) -> Fault {
     let line = node.document().text_pos_at(node.range().start).row;
     let id = node.attribute("id").map_or(String::new(), |id| format!(" id={id:?}"));
     Fault::new(Place::line(u64::from(line)), format!("<{}{id}>: {what}", node.tag_name().name()))
-}
-
-/// The size of the outermost viewport in user units, if it is known, and a sentence about what a unit is.
-fn viewport_of(root: Node<'_, '_>) -> Result<(Option<DVec2>, String), String> {
-    let view = view_box(root)?;
-    let length = |name: &str| root.attribute(name).and_then(|text| Length::from_str(text.trim()).ok());
-    let absolute = |l: Length| pixels(l.unit).map(|p| l.number * p).filter(|&size| size > 0.0);
-    let [width, height] = [length("width"), length("height")];
-    let Some(view) = view else {
-        let size = width.and_then(absolute).zip(height.and_then(absolute));
-        return Ok((size.map(|(w, h)| DVec2::new(w, h)), "a unit is a pixel, of which 96 are an inch".into()));
-    };
-    let unit = match width {
-        Some(l) if absolute(l).is_some() => {
-            let name = match l.unit {
-                LengthUnit::In => "in",
-                LengthUnit::Cm => "cm",
-                LengthUnit::Mm => "mm",
-                LengthUnit::Pt => "pt",
-                LengthUnit::Pc => "pc",
-                _ => "px",
-            };
-            // To six digits: a page's size is often rounded.
-            let size: f64 = format!("{:.5e}", l.number / view.w).parse().unwrap_or(f64::NAN);
-            format!("a unit is {size} {name} (the drawing is {} {name} wide, its viewBox {})", l.number, view.w)
-        }
-        _ => "units are those of the viewBox".into(),
-    };
-    Ok((Some(DVec2::new(view.w, view.h)), unit))
-}
-
-fn view_box(node: Node<'_, '_>) -> Result<Option<ViewBox>, String> {
-    let parse = |text| ViewBox::from_str(text).map_err(|e| format!("viewBox is {:?}: {e}", excerpt(text)));
-    node.attribute("viewBox").map(parse).transpose()
 }
 
 /// What an element inherits.

@@ -3,7 +3,8 @@
 use glam::DVec2;
 use svgtypes::{PathParser, PathSegment};
 
-use super::super::curves::{Ellipse, Pen, direction};
+use super::super::curves::{Ellipse, direction};
+use super::super::pen::{Drawn, Pen};
 
 /// Draws a path. Every subpath is a line of its own; one that is closed ends exactly where it began.
 pub(super) fn draw(data: &str, pen: &mut Pen<'_>) -> Result<(), String> {
@@ -36,7 +37,7 @@ impl Turtle<'_, '_> {
     fn go(&mut self, segment: PathSegment) -> Result<(), String> {
         let origin = if segment.is_abs() { DVec2::ZERO } else { self.here };
         let place = |x: f64, y: f64| origin + DVec2::new(x, y);
-        let drawn = |result: super::super::curves::Drawn| result.map_err(|fault| format!("d: {fault}"));
+        let drawn = |result: Drawn| result.map_err(|fault| format!("d: {fault}"));
         if self.closed && !matches!(segment, PathSegment::MoveTo { .. } | PathSegment::ClosePath { .. }) {
             drawn(self.pen.start(self.first))?;
         }

@@ -6,8 +6,9 @@ use glam::DVec2;
 use roxmltree::Node;
 use svgtypes::{Length, LengthUnit, NumberListParser};
 
-use super::super::curves::{Ellipse, Pen};
+use super::super::curves::Ellipse;
 use super::super::excerpt;
+use super::super::pen::{Drawn, Pen};
 use super::path;
 
 /// What a percentage is a part of.
@@ -152,7 +153,7 @@ pub(super) fn pixels(unit: LengthUnit) -> Option<f64> {
 }
 
 /// A rectangle with rounded corners, from its upper left one on.
-fn rounded(pen: &mut Pen<'_>, [low, high]: [DVec2; 2], radii: DVec2) -> super::super::curves::Drawn {
+fn rounded(pen: &mut Pen<'_>, [low, high]: [DVec2; 2], radii: DVec2) -> Drawn {
     let [a, b] = [DVec2::new(radii.x, 0.0), DVec2::new(0.0, radii.y)];
     pen.start(DVec2::new(low.x + radii.x, low.y))?;
     for (corner, degrees) in

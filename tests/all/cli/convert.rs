@@ -16,7 +16,8 @@ fn a_drawing_becomes_geojson_and_well_known_text() {
     assert_eq!(done.stderr, notes);
     assert_eq!(folder.done("convert p.geojson p.wkt").stderr, "");
     assert_eq!(folder.done("convert p.wkt q.json").stdout, "q.json: 16 walls, 16 vertices, anchor (2, 0.1)\n");
-    assert_eq!(folder.text("p.geojson"), folder.text("q.json"));
+    // Well-known text does not remember that y points down.
+    assert_eq!(folder.text("p.geojson").replace("\"y\":\"down\",", ""), folder.text("q.json"));
     // A finer drawing has more walls, and a file without an anchor none.
     assert!(folder.done("convert p.svg p.json --flatten 0.001").stdout.starts_with("p.json: 104 walls"));
     folder.write("m.map", "type octile\nheight 1\nwidth 2\nmap\n.@\n");

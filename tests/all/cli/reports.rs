@@ -56,7 +56,8 @@ fn eval_sums_up_in_a_table() {
 fn eval_sums_up_in_json() {
     let folder = Folder::hand_made();
     let report = report(&folder, "eval --scene s.geojson --traces t.csv --json --engine gpu --adapter software");
-    let scene = json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0]});
+    let scene =
+        json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0], "notes": []});
     for (field, expected) in [
         ("scene", scene),
         ("engine", json!("gpu")),

@@ -1,5 +1,7 @@
 //! Scenes as well-known text: lines and rings are walls, a lone point is the anchor.
 
+mod statements;
+
 use std::str::FromStr;
 
 use glam::DVec2;
@@ -11,9 +13,7 @@ use super::lines::{push_line, push_ring};
 use super::{Scene, excerpt};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
-
-/// How deep parentheses may lie in each other. A multi-polygon needs three.
-const DEPTH_MAX: usize = 64;
+use statements::Statements;
 
 /// Reads geometries one after the other, each with or without `SRID=...;` before it.
 ///
@@ -21,7 +21,7 @@ const DEPTH_MAX: usize = 64;
 /// the anchor if the file has exactly one. Z and M are passed over, as are lines that start with `#` or `--`.
 pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     let mut found = Found::default();
-    let mut statements = Statements { text, at: 0, line: 1 };
+    let mut statements = Statements::new(text);
     let mut count = 0;
     while let Some(statement) = statements.next()? {
         let place = Place::line(statement.line);
@@ -108,108 +108,6 @@ impl Found {
 
 fn position(c: &Coord<f64>) -> Result<DVec2, String> {
     check_point(DVec2::new(c.x, c.y)).map_err(|fault| fault.to_string())
-}
-
-/// One geometry of the file.
-struct Statement<'a> {
-    /// Where it starts.
-    line: u64,
-    srid: Option<u32>,
-    geometry: &'a str,
-}
-
-/// Cuts the file into geometries: each ends with its last parenthesis or with the word EMPTY.
-struct Statements<'a> {
-    text: &'a str,
-    at: usize,
-    /// The line in which `at` lies.
-    line: u64,
-}
-
-impl<'a> Statements<'a> {
-    fn next(&mut self) -> Result<Option<Statement<'a>>, Fault> {
-        self.skip();
-        if self.at == self.text.len() {
-            return Ok(None);
-        }
-        let line = self.line;
-        let srid = self.srid()?;
-        let start = self.at;
-        let length = self.length()?;
-        self.advance(length);
-        Ok(Some(Statement { line, srid, geometry: &self.text[start..start + length] }))
-    }
-
-    fn rest(&self) -> &'a str {
-        &self.text[self.at..]
-    }
-
-    fn advance(&mut self, bytes: usize) {
-        self.line += self.rest().as_bytes()[..bytes].iter().filter(|&&b| b == b'\n').count() as u64;
-        self.at += bytes;
-    }
-
-    /// Goes on to the next geometry.
-    fn skip(&mut self) {
-        loop {
-            let rest = self.rest();
-            let blank = rest.len() - rest.trim_start_matches(|c: char| c.is_ascii_whitespace() || c == ';').len();
-            let comment = if rest[blank..].starts_with('#') || rest[blank..].starts_with("--") {
-                rest[blank..].find('\n').unwrap_or(rest.len() - blank)
-            } else {
-                0
-            };
-            if blank + comment == 0 {
-                return;
-            }
-            self.advance(blank + comment);
-        }
-    }
-
-    /// Reads `SRID=...;` if it is there.
-    fn srid(&mut self) -> Result<Option<u32>, Fault> {
-        let rest = self.rest();
-        if !rest.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("SRID=")) {
-            return Ok(None);
-        }
-        let wrong = || Fault::new(Place::line(self.line), format!("{:?}; write SRID=4326; for one", excerpt(rest)));
-        let (number, _) = rest[5..].split_once(';').ok_or_else(wrong)?;
-        let srid = number.trim().parse().map_err(|_| wrong())?;
-        self.advance(5 + number.len() + 1);
-        let rest = self.rest();
-        self.advance(rest.len() - rest.trim_ascii_start().len());
-        Ok(Some(srid))
-    }
-
-    /// How many bytes the geometry has that starts here.
-    fn length(&self) -> Result<usize, Fault> {
-        let rest = self.rest();
-        let fault = |what: String| Err(Fault::new(Place::line(self.line), what));
-        let (mut depth, mut word) = (0, 0);
-        for (i, b) in rest.bytes().enumerate() {
-            match b {
-                b'(' => depth += 1,
-                b')' if depth <= 1 => return Ok(i + 1),
-                b')' => depth -= 1,
-                _ if depth == 0 && b.is_ascii_alphabetic() => word += 1,
-                _ if depth == 0 && rest.is_char_boundary(i) && rest[i - word..i].eq_ignore_ascii_case("EMPTY") => {
-                    return Ok(i);
-                }
-                _ => {}
-            }
-            if !b.is_ascii_alphabetic() {
-                word = 0;
-            }
-            if depth > DEPTH_MAX {
-                return fault(format!("parentheses lie in each other more than {DEPTH_MAX} deep"));
-            }
-        }
-        if depth == 0 {
-            // A last EMPTY, or no geometry at all, which the parser says.
-            return Ok(rest.len());
-        }
-        fault(format!("the file ends inside of this geometry; open parentheses: {depth}: {:?}", excerpt(rest)))
-    }
 }
 
 #[cfg(test)]
