@@ -126,10 +126,16 @@ struct Reader<'a, 'i> {
 
 impl<'a, 'i> Reader<'a, 'i> {
     fn new(document: &'a Document<'i>, length: usize) -> Self {
-        let ids = document.descendants().filter_map(|n| Some((n.attribute("id")?, n)));
+        // Where two elements have one id, it is that of the first.
+        let mut ids = HashMap::new();
+        for node in document.descendants() {
+            if let Some(id) = node.attribute("id") {
+                ids.entry(id).or_insert(node);
+            }
+        }
         Reader {
             styles: Styles::of(document),
-            ids: ids.collect(),
+            ids,
             outlines: Outlines::default(),
             anchor: None,
             in_anchor: false,

@@ -24,6 +24,8 @@ fn groups_uses_and_transforms_add_up() {
     assert_eq!(walls(&nested), [[12., 24., 16., 30.]]);
     let defs = format!("<defs><g id='a'>{LINE}</g></defs>");
     assert_eq!(walls(&format!("{defs}<use xlink:href='#a' x='10' y='20'/><use href='#a'/>")), [moved, line]);
+    let twice = format!("{defs}<path id='a' d='M0,0'/><use href='#a'/>");
+    assert_eq!(walls(&twice), [line]);
     let quarter = "<use href='#a' transform='rotate(90)' x='1'/>";
     assert_eq!(walls(&format!("{defs}{quarter}")), [[-2., 2., -5., 4.]]);
     let symbol = format!("<symbol id='s' viewBox='0 0 10 10'>{LINE}</symbol>");

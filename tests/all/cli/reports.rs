@@ -56,8 +56,7 @@ fn eval_sums_up_in_a_table() {
 fn eval_sums_up_in_json() {
     let folder = Folder::hand_made();
     let report = report(&folder, "eval --scene s.geojson --traces t.csv --json --engine gpu --adapter software");
-    let scene =
-        json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0], "notes": []});
+    let scene = json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0]});
     for (field, expected) in [
         ("scene", scene),
         ("engine", json!("gpu")),
@@ -83,7 +82,8 @@ fn check_counts_what_is_there() {
     let folder = Folder::hand_made();
     folder.write("z.geojson", r#"{"type": "LineString", "coordinates": [[0, 0], [0, 0], [1, 0]]}"#);
     folder.write("v.csv", "trace,x,y\n0,0,12\n0,5,12\n3,1,0\n3,5,0\n");
-    let scene = json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0]});
+    let scene =
+        json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0], "notes": []});
     let mut violation = report(&folder, "check --scene s.geojson --json --traces v.csv --on-violation flag");
     let violation = violation["traces"]["violations"][0].take();
     for (key, value) in [("trace", json!(3)), ("step", json!(1)), ("kind", json!("crosses")), ("wall", json!(0))] {
