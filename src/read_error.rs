@@ -115,9 +115,14 @@ pub(crate) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
+/// The whole file.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
+    std::fs::read(path).map_err(|cause| ReadError::io(path, cause))
+}
+
 /// The whole file as text, without a byte order mark.
 pub(crate) fn read_text(path: &Path) -> Result<String, ReadError> {
-    let mut bytes = std::fs::read(path).map_err(|cause| ReadError::io(path, cause))?;
+    let mut bytes = read_bytes(path)?;
     if bytes.starts_with(b"\xef\xbb\xbf") {
         bytes.drain(..3);
     }

@@ -36,7 +36,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return print_json(&json!({
             "scene": {
                 "name": args.input.name(), "walls": scene.walls().len(), "vertices": scene.vertices().len(),
-                "dropped": scene.dropped(), "anchor": [anchor.x, anchor.y],
+                "dropped": scene.dropped(), "anchor": [anchor.x, anchor.y], "notes": scene.notes(),
             },
             "traces": counts.map(|c| {
                 let violations: Vec<_> = c.violations.iter().map(violation).collect();

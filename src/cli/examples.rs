@@ -19,6 +19,13 @@ pub(super) const DRAW: &str = "Examples:
   tautline draw --scene plan.geojson --out plan.svg
   tautline draw --gallery gallery";
 
+pub(super) const CONVERT: &str = "Examples:
+  tautline convert plan.svg plan.geojson                     a drawing made in Inkscape
+  tautline convert --flatten 0.5 plan.dxf plan.wkt           arcs and splines to half a unit
+  tautline convert --unknown blocked map.yaml map.geojson    a map of ROS's map_server, in metres
+
+Reading OUT gives the same walls and the same anchor, bit for bit. docs/scenes.md says what becomes a wall.";
+
 pub(super) const BENCH: &str = "Examples:
   tautline bench                                             all engines, on random walls
   tautline bench --scene plan.geojson --step 0.5

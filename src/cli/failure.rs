@@ -105,9 +105,10 @@ impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         match error {
             WriteError::Io { .. } => Failure::internal(error.into()),
-            WriteError::Extension { .. } | WriteError::Target { .. } | WriteError::Source { .. } => {
-                Failure::input(error.into())
-            }
+            WriteError::Extension { .. }
+            | WriteError::SceneExtension { .. }
+            | WriteError::Target { .. }
+            | WriteError::Source { .. } => Failure::input(error.into()),
         }
     }
 }

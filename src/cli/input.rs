@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use glam::DVec2;
 use tautline::example::{Walker, floor_plan};
-use tautline::scene::{AnchorError, Model, Scene, read_scene};
+use tautline::scene::{AnchorError, Model, Scene, SceneOptions, Unknown, read_scene_with};
 use tautline::trace::TraceReader;
 
 use super::batches::Source;
@@ -19,7 +19,7 @@ const EXAMPLE_WALK: Walker = Walker { step: 0.25, steps: 500, seed: 1 };
 /// Where the walls are and the rope is tied.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InputArgs {
-    /// The walls: GeoJSON (.geojson, .json) or a MovingAI grid map (.map)
+    /// The walls: .geojson, .json, .wkt, .svg, .dxf, a MovingAI .map or a map_server's .yaml (docs/scenes.md)
     #[arg(long, value_name = "FILE")]
     pub scene: Option<PathBuf>,
     /// Where the rope is tied; overrides what the scene says
@@ -28,9 +28,53 @@ pub(crate) struct InputArgs {
     /// The traces: .csv with columns trace,x,y, or .parquet with the same columns
     #[arg(long, value_name = "FILE")]
     pub traces: Option<PathBuf>,
+    #[command(flatten)]
+    pub file: FileArgs,
     /// What to do with a trace that crosses a wall
     #[arg(long, value_enum, default_value = "error")]
     on_violation: OnViolation,
+}
+
+/// What scene files of some formats leave open.
+#[derive(Debug, clap::Args)]
+pub(crate) struct FileArgs {
+    /// How far walls may lie from the curves of an .svg or .dxf, in the scene's unit [default: its longer side / 2000]
+    #[arg(long, value_name = "TOL", value_parser = above_zero)]
+    flatten: Option<f64>,
+    /// What unknown cells of a map_server's map are
+    #[arg(long, value_enum, default_value = "free")]
+    unknown: Cells,
+}
+
+/// What cells are.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum Cells {
+    /// No obstacles
+    Free,
+    /// Obstacles
+    Blocked,
+}
+
+impl FileArgs {
+    pub(crate) fn options(&self) -> SceneOptions {
+        let unknown = match self.unknown {
+            Cells::Free => Unknown::Free,
+            Cells::Blocked => Unknown::Blocked,
+        };
+        SceneOptions { flatten: self.flatten, unknown }
+    }
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|&x: &f64| x > 0.0 && x.is_finite());
+    number.ok_or_else(|| "give a number above 0, such as 0.01".to_owned())
+}
+
+/// Tells what the reader of a scene has to say.
+pub(crate) fn note(path: &Path, scene: &Scene) {
+    for note in scene.notes() {
+        eprintln!("note: {}: {note}", path.display());
+    }
 }
 
 /// Two numbers with a comma between them.
@@ -51,10 +95,14 @@ impl InputArgs {
         self.tie(self.walls()?)
     }
 
-    /// The walls, and the anchor that the file may mark.
+    /// The walls, and the anchor that the file may mark. Says on stderr what is to be known of the file.
     pub(crate) fn walls(&self) -> Result<Scene, Failure> {
         match &self.scene {
-            Some(path) => Ok(read_scene(path)?),
+            Some(path) => {
+                let scene = read_scene_with(path, &self.file.options())?;
+                note(path, &scene);
+                Ok(scene)
+            }
             None => Ok(floor_plan()),
         }
     }
@@ -65,11 +113,7 @@ impl InputArgs {
             AnchorError::Missing => Failure::input(anyhow!(
                 "{}: no anchor; give --anchor X,Y{}",
                 self.name(),
-                if self.scene.as_deref().is_some_and(is_geojson) {
-                    ", or put a Point with the property \"role\": \"anchor\" into the file"
-                } else {
-                    ""
-                }
+                self.scene.as_deref().map_or("", how_to_mark)
             )),
             other => Failure::input(anyhow!("{}: {other}", self.name())),
         })
@@ -92,6 +136,14 @@ impl InputArgs {
     }
 }
 
-fn is_geojson(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("geojson") || e.eq_ignore_ascii_case("json"))
+/// How a file of this format marks its anchor.
+fn how_to_mark(path: &Path) -> &'static str {
+    let extension = path.extension().map(|e| e.to_ascii_lowercase()).unwrap_or_default();
+    match extension.to_str() {
+        Some("geojson" | "json") => ", or put a Point with the property \"role\": \"anchor\" into the file",
+        Some("wkt") => ", or put one POINT into the file",
+        Some("svg") => ", or give an element the id \"anchor\"",
+        Some("dxf") => ", or put a POINT on a layer called anchor",
+        _ => "",
+    }
 }

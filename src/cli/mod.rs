@@ -4,6 +4,7 @@ mod adapters;
 mod batches;
 mod bench;
 mod check;
+mod convert;
 mod draw;
 mod engine;
 pub(crate) mod environment;
@@ -55,6 +56,9 @@ enum Command {
     /// Draw traces and their ropes: at one moment, event by event, or moving
     #[command(after_help = examples::DRAW)]
     Draw(draw::Args),
+    /// Write a scene of any format as GeoJSON or well-known text
+    #[command(after_help = examples::CONVERT)]
+    Convert(convert::Args),
     /// Measure the throughput of all engines, side by side on the same walks
     #[command(after_help = examples::BENCH)]
     Bench(bench::Args),
@@ -79,6 +83,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Study(args) => study::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Draw(args) => draw::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Adapters(args) => adapters::run(&args),
         Command::Completions(args) => manual::completions(&args),

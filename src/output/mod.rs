@@ -9,6 +9,7 @@ mod events;
 mod merge;
 mod results;
 mod rows;
+mod scene;
 mod tables;
 mod text;
 mod whole_file;
@@ -19,6 +20,7 @@ use std::path::Path;
 pub use events::{EventWriter, write_events};
 pub use merge::merge_results;
 pub use results::{ResultWriter, write_results};
+pub use scene::write_scene;
 pub use whole_file::WholeFile;
 pub use write_error::WriteError;
 

@@ -114,7 +114,7 @@ pub(super) fn event_csv(out: &mut impl Write, trace: u64, e: &Event, at: DVec2) 
     writeln!(out, ",{}", e.side.name())
 }
 
-fn number(out: &mut impl Write, x: f64) -> io::Result<()> {
+pub(super) fn number(out: &mut impl Write, x: f64) -> io::Result<()> {
     Ok(serde_json::to_writer(out, &x)?)
 }
 

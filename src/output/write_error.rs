@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// Why results or events cannot be written. Whatever stood at the path before still stands there.
+/// Why results, events or a scene cannot be written. Whatever stood at the path before still stands there.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The extension names no format that is written here.
@@ -11,6 +11,12 @@ pub enum WriteError {
         path.display()
     )]
     Extension {
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The extension names no format in which scenes are written.
+    #[error("{}: the extension does not name a format; scenes are written as .geojson, .json or .wkt", path.display())]
+    SceneExtension {
         /// Which file.
         path: PathBuf,
     },

@@ -84,7 +84,7 @@ fn draw(
     let ticks = |low: f64, high: f64| Ticks::linear(low, high, 5);
     let y_ticks = ticks(view.low.y, view.high.y);
     let left = 18.0 + y_ticks.width();
-    let frame = Frame::fit(view, [left, 34.0], [WIDTH - left - 118.0, 580.0]);
+    let frame = Frame::fit(view, [left, 34.0], [WIDTH - left - 118.0, 580.0]).of(scene);
     let bar_height = frame.height.max(150.0);
     let mut svg = Svg::new(WIDTH, frame.top + bar_height.max(frame.height) + 52.0, &format!("Map: {what}"));
 

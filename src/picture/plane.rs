@@ -77,6 +77,8 @@ pub(super) struct Frame {
     pub(super) width: f64,
     pub(super) height: f64,
     pub(super) scale: f64,
+    /// Whether y points down.
+    down: bool,
 }
 
 impl Frame {
@@ -84,12 +86,23 @@ impl Frame {
     pub(super) fn fit(view: View, [left, top]: [f64; 2], [width, height]: [f64; 2]) -> Self {
         let size = view.size();
         let scale = (width / size.x).min(height / size.y);
-        Frame { view, left, top, width: size.x * scale, height: size.y * scale, scale }
+        Frame { view, left, top, width: size.x * scale, height: size.y * scale, scale, down: false }
+    }
+
+    /// The same frame with y upwards or downwards, as the scene is meant to be looked at.
+    pub(super) fn of(self, scene: &Scene) -> Self {
+        Frame { down: scene.y_down(), ..self }
+    }
+
+    /// Whether left and right are the other way round in the picture.
+    pub(super) fn mirrored(&self) -> bool {
+        self.down
     }
 
     /// Where a point lies.
     pub(super) fn at(&self, p: DVec2) -> [f64; 2] {
-        [self.left + (p.x - self.view.low.x) * self.scale, self.top + (self.view.high.y - p.y) * self.scale]
+        let down = if self.down { p.y - self.view.low.y } else { self.view.high.y - p.y };
+        [self.left + (p.x - self.view.low.x) * self.scale, self.top + down * self.scale]
     }
 
     /// All walls within the view, as the data of one path.
@@ -223,5 +236,17 @@ mod tests {
             [[5.0, 5.0].into(), [5.0, 5.0001].into()],
         ]);
         assert_eq!(frame().walls(&far.unwrap()), "m0 50l100 0");
+    }
+
+    #[test]
+    fn a_scene_whose_y_points_down_is_shown_so() {
+        let corners = [[1.0, 1.0], [4.0, 1.0], [4.0, 3.0], [1.0, 2.0]].map(DVec2::from);
+        let up = Scene::new(corners.windows(2).map(|w| [w[0], w[1]])).unwrap();
+        // The same drawing with its coordinates counted from the upper edge.
+        let turned = |p: DVec2| DVec2::new(p.x, 10.0 - p.y);
+        let down = Scene::new(corners.windows(2).map(|w| [turned(w[0]), turned(w[1])])).unwrap().with_y_down();
+        assert_eq!(frame().of(&up).walls(&up), frame().of(&down).walls(&down));
+        assert_ne!(frame().walls(&up), frame().walls(&down));
+        assert_eq!([&up, &down].map(|scene| frame().of(scene).mirrored()), [false, true]);
     }
 }

@@ -36,7 +36,7 @@ pub fn ropes(summary: &Summary, scene: &Scene) -> Option<String> {
     let mut svg = Svg::new(WIDTH, bottom + 48.0, "The commonest ropes at the end");
 
     // The walls stand in the file once.
-    let frame_at = |at: [f64; 2]| Frame::fit(view, at, [width, height]);
+    let frame_at = |at: [f64; 2]| Frame::fit(view, at, [width, height]).of(scene);
     svg.open("defs", "");
     let style = format!("fill=\"none\" stroke=\"{WALL}\" stroke-width=\".8\" stroke-linejoin=\"round\"");
     svg.path(&frame_at([0.0, 0.0]).walls(scene), &format!("id=\"rope-walls\" {style}"));
@@ -74,7 +74,7 @@ fn draw(svg: &mut Svg, frame: &Frame, rope: &CommonRope) {
         let outlined = format!("fill=\"{MUTED}\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"");
         svg.text(at, Align::Start, &outlined, "straight");
     }
-    let left = |i: usize| rope.sides.get(i).is_some_and(|s| s == "left");
+    let left = |i: usize| rope.sides.get(i).is_some_and(|s| (s == "left") != frame.mirrored());
     if let [.., before, last] = line[..] {
         free_end(svg, before, last, left(turns.len() - 1));
     }

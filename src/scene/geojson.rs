@@ -3,17 +3,20 @@
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, JsonValue, Position};
 use glam::DVec2;
 
-use super::Scene;
+use super::lines::{push_line, push_ring};
+use super::{Scene, geographic};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
 
 /// Reads a FeatureCollection, a Feature or a bare geometry.
 ///
 /// LineString, MultiLineString, Polygon and MultiPolygon give one wall for each pair of consecutive positions; points
-/// that are no anchor are passed over. Further numbers of a position (its altitude) are passed over too.
+/// that are no anchor are passed over. The member `"y": "down"` of a FeatureCollection says so. Further numbers of a position (its altitude) are passed over too.
 pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     let document: GeoJson = serde_json::from_str(text).map_err(|e| syntax_fault(&e))?;
     let mut found = Found::default();
+    let degrees = is_in_degrees(&document);
+    let y_down = member(&document, "y").and_then(JsonValue::as_str) == Some("down");
     match document {
         GeoJson::FeatureCollection(collection) => {
             for (i, feature) in collection.features.iter().enumerate() {
@@ -23,11 +26,26 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
         GeoJson::Feature(feature) => found.feature(&feature, 0)?,
         GeoJson::Geometry(geometry) => found.geometry(&geometry, &Place::default(), None)?,
     }
-    let scene = Scene::new(found.walls)?;
-    Ok(match found.anchor {
-        Some((anchor, _)) => scene.with_anchor(anchor),
-        None => scene,
-    })
+    let mut scene = Scene::new(found.walls)?;
+    if let Some((anchor, _)) = found.anchor {
+        scene = scene.with_anchor(anchor);
+    }
+    if degrees.unwrap_or_else(|| geographic::looks_so(scene.vertices())) {
+        scene.note(geographic::WARNING);
+    }
+    Ok(if y_down { scene.with_y_down() } else { scene })
+}
+
+/// A member of a FeatureCollection that GeoJSON does not define.
+fn member<'a>(document: &'a GeoJson, name: &str) -> Option<&'a JsonValue> {
+    let GeoJson::FeatureCollection(collection) = document else { return None };
+    collection.foreign_members.as_ref()?.get(name)
+}
+
+/// What the document's `crs` says, as files have it that were written by GDAL or before RFC 7946.
+fn is_in_degrees(document: &GeoJson) -> Option<bool> {
+    let name = member(document, "crs")?.pointer("/properties/name")?.as_str()?;
+    Some(["CRS84", "CRS84h", "4326", "4979"].iter().any(|code| name.rsplit(':').next() == Some(code)))
 }
 
 /// Moves the place out of the parser's message to where all messages have it.
@@ -105,36 +123,14 @@ impl Found {
         Ok(())
     }
 
-    /// Adds the walls of one line string or ring.
+    /// Adds the walls of one line string.
     fn line(&mut self, positions: &[Position], place: &Place) -> Result<(), Fault> {
-        if positions.len() == 1 {
-            return Err(Fault::new(place.clone(), "one position only; a line needs two or more"));
-        }
-        let mut last = None;
-        for (i, position) in positions.iter().enumerate() {
-            let p = point_of(position).map_err(|what| Fault::new(place.then("position", i), what))?;
-            if let Some(last) = last {
-                self.walls.push([last, p]);
-            }
-            last = Some(p);
-        }
-        Ok(())
+        push_line(&mut self.walls, positions.iter().map(point_of), place)
     }
 
     fn polygon(&mut self, rings: &[Vec<Position>], place: &Place) -> Result<(), Fault> {
-        for (i, ring) in rings.iter().enumerate() {
-            let place = place.then("ring", i);
-            let from = self.walls.len();
-            self.line(ring, &place)?;
-            if let [Some([first, _]), Some([_, last])] = [self.walls.get(from), self.walls[from..].last()]
-                && first != last
-            {
-                let [first, last] = [first, last].map(|p| format!("[{:?}, {:?}]", p.x, p.y));
-                let what = format!("the ring is open: it starts at {first} and ends at {last}");
-                return Err(Fault::new(place, format!("{what}; the last position must repeat the first")));
-            }
-        }
-        Ok(())
+        let mut rings = rings.iter().enumerate();
+        rings.try_for_each(|(i, ring)| push_ring(&mut self.walls, ring.iter().map(point_of), &place.then("ring", i)))
     }
 }
 
@@ -142,8 +138,7 @@ fn point(position: &Position, place: &Place) -> Result<DVec2, Fault> {
     point_of(position).map_err(|what| Fault::new(place.clone(), what))
 }
 
-/// The position's x and y, or what is wrong with them. The caller adds the place: building it for every position
-/// would take longer than reading the position.
+/// The position's x and y, or what is wrong with them.
 fn point_of(position: &Position) -> Result<DVec2, String> {
     match position.as_slice() {
         [x, y, ..] => check_point(DVec2::new(*x, *y)).map_err(|fault| fault.to_string()),
@@ -254,7 +249,7 @@ mod tests {
     #[test]
     fn an_open_ring_is_named() {
         let ring = geometry("MultiPolygon", "[[[[0,0],[1,0],[0,0]],[[0,0],[1,0],[1,1]]]]");
-        let what = "the ring is open: it starts at [0.0, 0.0] and ends at [1.0, 1.0]";
+        let what = "the ring is open: it starts at (0, 0) and ends at (1, 1)";
         let expected = format!("feature 0, polygon 0, ring 1: {what}; the last position must repeat the first");
         assert_eq!(fault(&features(&[&ring])), expected);
     }

@@ -1,13 +1,23 @@
 //! What the user brings as the plane: walls, their ends, and the anchor.
 
+mod cells;
+mod curves;
+mod dxf;
+mod geographic;
 mod geojson;
 mod grid;
+mod image;
 mod index;
+mod lines;
 mod model;
 mod movingai;
+mod pen;
 mod read;
+mod ros_map;
+mod svg;
+mod wkt;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use glam::DVec2;
 
@@ -15,7 +25,7 @@ use crate::geometry::{CoordinateFault, check_point};
 
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};
-pub use read::read_scene;
+pub use read::{SceneOptions, Unknown, read_scene, read_scene_with};
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.
 ///
@@ -26,6 +36,8 @@ pub struct Scene {
     walls: Vec<[u32; 2]>,
     anchor: Option<DVec2>,
     dropped: usize,
+    y_down: bool,
+    notes: Vec<String>,
 }
 
 impl Scene {
@@ -73,6 +85,13 @@ impl Scene {
         self
     }
 
+    /// The same scene, looked at with y pointing down. Its coordinates stay as they are.
+    #[must_use]
+    pub fn with_y_down(mut self) -> Self {
+        self.y_down = true;
+        self
+    }
+
     /// The ends of all walls, each once.
     pub fn vertices(&self) -> &[DVec2] {
         &self.vertices
@@ -93,8 +112,36 @@ impl Scene {
         self.anchor
     }
 
+    /// Whether y points down when the scene is looked at as its file means it: pictures show it so. Nothing is computed
+    /// otherwise for it; left and right are those of a reader for whom y points up.
+    pub fn y_down(&self) -> bool {
+        self.y_down
+    }
+
     /// How many walls of zero length were dropped.
     pub fn dropped(&self) -> usize {
         self.dropped
     }
+
+    /// What the reader of the scene's file has to say to its user: what a unit is, what was passed over, how closely walls
+    /// follow curves, and that degrees are no lengths. Sentences without a full stop.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    fn note(&mut self, note: impl Into<String>) {
+        self.notes.push(note.into());
+    }
+}
+
+/// Names with their counts, such as `3 image, 1 text`.
+fn listed(counts: &BTreeMap<&str, usize>) -> String {
+    let all: Vec<String> = counts.iter().map(|(name, count)| format!("{count} {name}")).collect();
+    all.join(", ")
+}
+
+/// The start of `text`: a line of some other file may be very long.
+fn excerpt(text: &str) -> String {
+    let start: String = text.chars().take(40).collect();
+    if start.len() < text.len() { start + "..." } else { start }
 }

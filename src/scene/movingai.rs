@@ -2,60 +2,19 @@
 
 use glam::DVec2;
 
-use super::Scene;
+use super::cells::{SIDE_MAX, borders};
+use super::{Scene, excerpt};
 use crate::read_error::{Fault, Place};
-
-/// The largest height and width: the corners of a map this large can still be numbered with 32 bits.
-const SIDE_MAX: usize = 1 << 15;
 
 /// Reads a map in time linear in its cells.
 ///
 /// Cell (column, row) is the unit square from (column, row) to (column + 1, row + 1), rows downwards as in the file.
-/// What lies around the map is no cell: its outer edge is no wall. Straight runs of borders are one wall; where four
-/// borders meet, all four end. Horizontal walls come first, by row and column, then vertical ones, by column and row.
+/// The walls' order is that of [`borders`].
 pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     let grid = Grid::parse(text)?;
-    let mut walls = Vec::new();
-    for y in 1..grid.height() {
-        let walled = |x| grid.blocked(x, y - 1) != grid.blocked(x, y);
-        // Between two borders along the line, either none or two borders leave the corner across the line.
-        let crossed = |x| grid.blocked(x - 1, y) != grid.blocked(x, y);
-        for [from, to] in runs(grid.width, walled, crossed) {
-            walls.push([[from, y], [to, y]]);
-        }
-    }
-    for x in 1..grid.width {
-        let walled = |y| grid.blocked(x - 1, y) != grid.blocked(x, y);
-        let crossed = |y| grid.blocked(x, y - 1) != grid.blocked(x, y);
-        for [from, to] in runs(grid.height(), walled, crossed) {
-            walls.push([[x, from], [x, to]]);
-        }
-    }
-    Ok(Scene::new(walls.into_iter().map(|ends| ends.map(|[x, y]| DVec2::new(x as f64, y as f64))))?)
-}
-
-/// The straight runs `[from, to]` of unit borders `from..to` among `0..count`, broken where they are crossed.
-///
-/// `crossed(i)` tells it for the corner between borders `i - 1` and `i` and is asked only where both are walled.
-fn runs(count: usize, walled: impl Fn(usize) -> bool, crossed: impl Fn(usize) -> bool) -> Vec<[usize; 2]> {
-    let mut runs = Vec::new();
-    let mut start = None;
-    for i in 0..count {
-        match (walled(i), start) {
-            (true, None) => start = Some(i),
-            (true, Some(from)) if crossed(i) => {
-                runs.push([from, i]);
-                start = Some(i);
-            }
-            (false, Some(from)) => {
-                runs.push([from, i]);
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    runs.extend(start.map(|from| [from, count]));
-    runs
+    let blocked = |x, y| grid.blocked(x, y);
+    let walls = borders(grid.width, grid.height(), &blocked);
+    Ok(Scene::new(walls.map(|ends| ends.map(|[x, y]| DVec2::new(x as f64, y as f64))))?.with_y_down())
 }
 
 /// The cells: `rows[row][column]`, all rows `width` long, every character one that is known.
@@ -120,12 +79,6 @@ fn header<'a>(
             Err(Fault::new(Place::line(line), what))
         }
     }
-}
-
-/// The start of `text`: a line of some other file may be very long.
-fn excerpt(text: &str) -> String {
-    let start: String = text.chars().take(40).collect();
-    if start.len() < text.len() { start + "..." } else { start }
 }
 
 fn side((line, text): (u64, &str), name: &str) -> Result<usize, Fault> {

@@ -2,27 +2,80 @@
 
 use std::path::Path;
 
-use super::{Scene, geojson, movingai};
-use crate::read_error::{ReadError, extension, read_text};
+use super::{Scene, dxf, geojson, movingai, ros_map, svg, wkt};
+use crate::read_error::{ReadError, extension, read_bytes, read_text};
 
-/// Reads the scene in `path`: `.geojson` or `.json` as GeoJSON, `.map` as a MovingAI grid map.
+/// What a file leaves open and its reader needs to know.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SceneOptions {
+    /// How far a wall may lie from the curve that it stands for, in the scene's unit: above 0. `None` is a 2000th of the
+    /// drawing's longer side. For `.svg` and `.dxf`.
+    pub flatten: Option<f64>,
+    /// What cells are of which the map does not know whether they are free. For `.yaml`.
+    pub unknown: Unknown,
+}
+
+/// What a cell is of which a map does not know whether it is free.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Unknown {
+    /// No obstacle: only what the map knows to be occupied is one.
+    #[default]
+    Free,
+    /// An obstacle, as what is occupied.
+    Blocked,
+}
+
+/// Reads the scene in `path` with the usual [`SceneOptions`].
+///
+/// # Errors
+///
+/// As [`read_scene_with`].
+pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
+    read_scene_with(path, &SceneOptions::default())
+}
+
+/// Reads the scene in `path`, in the format that its extension names:
+///
+/// | extension | format |
+/// |---|---|
+/// | `.geojson`, `.json` | GeoJSON |
+/// | `.wkt` | well-known text |
+/// | `.svg` | drawings |
+/// | `.dxf` | drawings in ASCII DXF |
+/// | `.map` | MovingAI grid maps |
+/// | `.yaml`, `.yml` | maps of ROS's `map_server`, with the image that they name |
 ///
 /// The extension's case does not matter. Coordinates are taken as planar, in the file's own unit. A scene may be
-/// without walls and without an anchor.
+/// without walls and without an anchor. Time and memory are linear in the file, but for what a drawing uses many times:
+/// that is bounded.
 ///
 /// # Errors
 ///
 /// A file that cannot be opened, an extension of another format, and contents that are not a scene, with their place.
-pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
-    let parse = match extension(path).as_str() {
-        "geojson" | "json" => geojson::parse,
-        "map" => movingai::parse,
+///
+/// ```
+/// use tautline::scene::{SceneOptions, read_scene_with};
+/// let path = std::env::temp_dir().join("tautline-doc-room.svg");
+/// std::fs::write(&path, r#"<svg xmlns="http://www.w3.org/2000/svg"><circle id="anchor" cx="2" cy="1" r=".1"/>
+///     <rect width="4" height="3"/><path d="M1,0 Q1,2 3,2"/></svg>"#)?;
+/// let scene = read_scene_with(&path, &SceneOptions { flatten: Some(0.1), ..Default::default() })?;
+/// assert_eq!((scene.walls().len(), scene.anchor()), (4 + 3, Some([2.0, 1.0].into())));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_scene_with(path: &Path, options: &SceneOptions) -> Result<Scene, ReadError> {
+    let parsed = match extension(path).as_str() {
+        "geojson" | "json" => geojson::parse(&read_text(path)?),
+        "wkt" => wkt::parse(&read_text(path)?),
+        "svg" => svg::parse(&read_text(path)?, options.flatten),
+        "dxf" => dxf::parse(&read_bytes(path)?, options.flatten),
+        "map" => movingai::parse(&read_text(path)?),
+        "yaml" | "yml" => return ros_map::read(path, options.unknown),
         _ => {
-            let extensions = &[".geojson", ".json", ".map"];
+            let extensions = &[".geojson", ".json", ".wkt", ".svg", ".dxf", ".map", ".yaml", ".yml"];
             return Err(ReadError::Extension { path: path.into(), what: "scenes", extensions });
         }
     };
-    parse(&read_text(path)?).map_err(|fault| fault.in_file(path))
+    parsed.map_err(|fault| fault.in_file(path))
 }
 
 #[cfg(test)]
@@ -51,7 +104,7 @@ mod tests {
     fn other_extensions_are_told_what_is_read() {
         for name in ["scene.txt", "scene"] {
             let e = read_scene(Path::new(name)).unwrap_err().to_string();
-            let rest = "the extension does not name a format; scenes are read from .geojson, .json, .map";
+            let rest = "the extension does not name a format; scenes are read from .geojson, .json, .wkt, .svg, .dxf, .map, .yaml, .yml";
             assert_eq!(e, format!("{name}: {rest}"));
         }
     }

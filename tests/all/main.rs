@@ -6,6 +6,7 @@ mod cli;
 mod conservative;
 mod drawings;
 mod examples;
+mod formats;
 mod gallery;
 mod golden;
 mod live;

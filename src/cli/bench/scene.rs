@@ -10,6 +10,7 @@ use tautline::report::bench::BenchScene;
 use tautline::scene::{AnchorError, Model, read_scene};
 
 use super::super::failure::Failure;
+use super::super::input::note;
 
 /// The scene called `name`, or the one in that file.
 pub(super) fn open(name: &str, anchor: Option<DVec2>) -> Result<BenchScene, Failure> {
@@ -24,7 +25,9 @@ pub(super) fn open(name: &str, anchor: Option<DVec2>) -> Result<BenchScene, Fail
             Err(Failure::input(anyhow!("{error}; and there is no file of that name")))
         }
         Err(_) => {
-            let model = Model::new(read_scene(path)?, anchor).map_err(|error| match error {
+            let scene = read_scene(path)?;
+            note(path, &scene);
+            let model = Model::new(scene, anchor).map_err(|error| match error {
                 AnchorError::Missing => Failure::input(anyhow!("{name}: no anchor; give --anchor X,Y")),
                 other => Failure::input(anyhow!("{name}: {other}")),
             })?;

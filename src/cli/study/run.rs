@@ -16,6 +16,7 @@ use super::parts::Parts;
 use super::show;
 use crate::cli::engine::EngineArgs;
 use crate::cli::failure::Failure;
+use crate::cli::input::note;
 use crate::cli::interrupt::{self, Writing};
 use crate::cli::progress::{Progress, with_progress};
 use crate::cli::{print, print_json};
@@ -85,6 +86,9 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         )));
     }
     let study = Study::open(plan, &base)?;
+    if let Some(file) = &study.plan().scene.file {
+        note(file, study.models()[0].scene());
+    }
     if args.dry_run {
         return dry_run(&study, args);
     }

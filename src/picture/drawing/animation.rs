@@ -39,7 +39,7 @@ impl Drawing<'_> {
         let dragged = self.one("an animation")?;
         let corners = most_contacts(dragged) + 2;
         let film = self.film(dragged, (POINTS / corners).clamp(50, MOMENTS));
-        let plot = Plot::new(self.view(2.5)?);
+        let plot = Plot::new(self.view(2.5)?, self.scene);
         let (mut inside, mut key) = (Svg::part(), Key::default());
         let mut canvas = Canvas { svg: &mut inside, frame: plot.frame, theme: self.theme, key: &mut key };
         canvas.walls(self.scene);

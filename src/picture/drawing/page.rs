@@ -53,7 +53,7 @@ impl Drawing<'_> {
     fn player(&self, dragged: &Dragged<'_>) -> Result<String, DrawError> {
         let moment = self.moment(dragged)?;
         let film = self.film(dragged, (CORNERS / (most_contacts(dragged) + 1)).min(MOMENTS));
-        let plot = Plot::new(self.view(2.5)?);
+        let plot = Plot::new(self.view(2.5)?, self.scene);
         let (mut inside, mut key) = (Svg::part(), Key::default());
         let mut canvas = Canvas { svg: &mut inside, frame: plot.frame, theme: self.theme, key: &mut key };
         canvas.walls(self.scene);

@@ -12,6 +12,7 @@ use crate::picture::plane::{Frame, View};
 use crate::picture::svg::{Align, Svg, px};
 use crate::picture::ticks::Ticks;
 use crate::rope::Moment;
+use crate::scene::Scene;
 
 /// How high the plane may be, in pixels.
 const HIGHEST: f64 = 600.0;
@@ -33,7 +34,7 @@ impl Drawing<'_> {
             return Err(DrawError::TooManyTraces { traces: self.dragged.len(), most: TRACES });
         }
         let shown = self.dragged.iter().map(|d| Ok((d, self.moment(d)?))).collect::<Result<Vec<_>, DrawError>>()?;
-        let plot = Plot::new(self.view(2.5)?);
+        let plot = Plot::new(self.view(2.5)?, self.scene);
         let (mut inside, mut key) = (Svg::part(), Key::default());
         let mut canvas = Canvas { svg: &mut inside, frame: plot.frame, theme: self.theme, key: &mut key };
         canvas.walls(self.scene);
@@ -111,10 +112,10 @@ pub(super) struct Plot {
 }
 
 impl Plot {
-    pub(super) fn new(view: View) -> Self {
+    pub(super) fn new(view: View, scene: &Scene) -> Self {
         let y_ticks = Ticks::linear(view.low.y, view.high.y, 5);
         let left = MARGIN + 8.0 + y_ticks.width();
-        let frame = Frame::fit(view, [0.0, 0.0], [WIDTH - left - MARGIN, HIGHEST]);
+        let frame = Frame::fit(view, [0.0, 0.0], [WIDTH - left - MARGIN, HIGHEST]).of(scene);
         Plot { frame, left, y_ticks }
     }
 

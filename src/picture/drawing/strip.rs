@@ -86,7 +86,7 @@ impl Drawing<'_> {
         let wide = WIDTH - 2.0 * MARGIN;
         let columns = panels.len().clamp(1, COLUMNS);
         let each = (wide - GAP * (columns - 1) as f64) / columns as f64;
-        let frame = Frame::fit(self.view(1.5)?, [0.0, 0.0], [each, HIGHEST]);
+        let frame = Frame::fit(self.view(1.5)?, [0.0, 0.0], [each, HIGHEST]).of(self.scene);
         let lines = wrapped(heading, wide, 14.0);
         let top = MARGIN + 20.0 * lines.len() as f64;
         let rows = panels.len().div_ceil(columns);

@@ -2,6 +2,7 @@
 
 mod batches;
 mod bench;
+mod convert;
 mod draw;
 mod engines;
 mod process;

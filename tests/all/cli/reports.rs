@@ -82,7 +82,8 @@ fn check_counts_what_is_there() {
     let folder = Folder::hand_made();
     folder.write("z.geojson", r#"{"type": "LineString", "coordinates": [[0, 0], [0, 0], [1, 0]]}"#);
     folder.write("v.csv", "trace,x,y\n0,0,12\n0,5,12\n3,1,0\n3,5,0\n");
-    let scene = json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0]});
+    let scene =
+        json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0], "notes": []});
     let mut violation = report(&folder, "check --scene s.geojson --json --traces v.csv --on-violation flag");
     let violation = violation["traces"]["violations"][0].take();
     for (key, value) in [("trace", json!(3)), ("step", json!(1)), ("kind", json!("crosses")), ("wall", json!(0))] {
@@ -112,7 +113,7 @@ fn check_refuses_what_eval_refuses() {
     let folder = Folder::hand_made();
     folder.write("v.csv", "trace,x,y\n3,1,0\n3,5,0\n");
     folder.refused(2, "check --scene s.geojson --traces v.csv", &["v.csv: trace 3, step 1: ", "crosses wall 0"]);
-    folder.refused(2, "check --scene s.wkb", &["s.wkb", ".geojson, .json, .map"]);
+    folder.refused(2, "check --scene s.wkb", &["s.wkb", ".geojson, .json, .wkt, .svg, .dxf, .map, .yaml, .yml"]);
     folder.refused(2, "check --traces t.csv", &["--traces needs --scene"]);
     folder.refused(2, "check --scene s.geojson --anchor 3,1", &["inside wall 0"]);
 }

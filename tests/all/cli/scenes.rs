@@ -28,7 +28,11 @@ fn files_that_are_not_there_or_not_known() {
     folder.refused(2, &eval("no.map"), &["cannot read no.map", "No such file"]);
     for name in ["s.shp", "s"] {
         folder.write(name, "walls");
-        folder.refused(2, &eval(name), &[&format!("{name}: the extension"), "scenes", ".geojson, .json, .map"]);
+        folder.refused(
+            2,
+            &eval(name),
+            &[&format!("{name}: the extension"), "scenes", ".geojson, .json, .wkt, .svg, .dxf, .map, .yaml, .yml"],
+        );
     }
     std::fs::create_dir(folder.path("folder.json")).unwrap();
     folder.refused(2, &eval("folder.json"), &["cannot read folder.json", "directory"]);
@@ -49,7 +53,7 @@ fn faults_in_geojson_name_feature_and_position() {
     let small = ["s.geojson: feature 1, position 0: 1e-200 is too small", "0 or at least 2^-450"];
     refused("s.geojson", &second_feature("LineString", "[[0, 1e-200], [1, 0]]"), &small);
     let open = [
-        "s.geojson: feature 1, ring 0: the ring is open: it starts at [1.0, 1.0] and ends at [2.0, 2.0]",
+        "s.geojson: feature 1, ring 0: the ring is open: it starts at (1, 1) and ends at (2, 2)",
         "the last position must repeat the first",
     ];
     refused("s.geojson", &second_feature("Polygon", "[[[1, 1], [2, 1], [2, 2]]]"), &open);

@@ -1,0 +1,298 @@
+//! Lines and curves of a drawing, and how they become walls.
+//!
+//! A curve becomes n walls between points of it at equal steps of its parameter. A curve p(t) lies within
+//! max |p''| h^2 / 8 of its chord over a step h: the error of linear interpolation. So n is the least number for which
+//! that is no more than the tolerance. Ends are taken as given, so that what meets in the drawing meets in the scene.
+//! All arithmetic is that of f64 and `libm`: the same walls on every machine.
+
+use glam::{DAffine2, DVec2};
+
+use super::pen::Pen;
+
+/// Without a tolerance, walls lie within the drawing's longer side divided by this, to three digits, of their curves.
+const PARTS_OF_SIDE: f64 = 2000.0;
+
+/// How many walls all curves of a drawing may become.
+const WALLS_MAX: f64 = 4_194_304.0;
+
+/// Lines and curves in the scene's coordinates.
+#[derive(Debug, Default)]
+pub(super) struct Outlines {
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// A part of a drawing, in the scene's coordinates.
+#[derive(Debug)]
+pub(super) enum Piece {
+    /// A line of its own begins here.
+    Start(DVec2),
+    /// Straight from where the last piece ends.
+    Line(DVec2),
+    /// Along a curve from where the last piece ends.
+    Curve(Box<Curve>, DVec2),
+}
+
+/// A curve that is to become walls.
+#[derive(Debug)]
+pub(super) enum Curve {
+    /// The control points, both ends included.
+    Bezier(Vec<DVec2>),
+    Ellipse(Ellipse),
+}
+
+/// An arc of an ellipse: centre + a cos t + b sin t for t from `from` to `from + sweep`, both in degrees.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ellipse {
+    pub(super) centre: DVec2,
+    pub(super) a: DVec2,
+    pub(super) b: DVec2,
+    pub(super) from: f64,
+    pub(super) sweep: f64,
+}
+
+impl Ellipse {
+    /// The point at `degrees`.
+    pub(super) fn at(&self, degrees: f64) -> DVec2 {
+        let d = direction(degrees);
+        self.centre + self.a * d.x + self.b * d.y
+    }
+
+    /// The greatest distance from the centre, which is also the greatest |p''| by radians.
+    fn radius(&self) -> f64 {
+        let DVec2 { x: ax, y: ay } = self.a;
+        let DVec2 { x: bx, y: by } = self.b;
+        (libm::hypot(ax + by, ay - bx) + libm::hypot(ax - by, ay + bx)) / 2.0
+    }
+
+    /// Half the size of the box round the whole ellipse.
+    fn reach(&self) -> DVec2 {
+        DVec2::new(libm::hypot(self.a.x, self.b.x), libm::hypot(self.a.y, self.b.y))
+    }
+}
+
+/// The unit vector at `degrees` from the x axis towards the y axis; exact at quarter turns.
+pub(super) fn direction(degrees: f64) -> DVec2 {
+    match degrees % 360.0 {
+        0.0 => DVec2::X,
+        90.0 | -270.0 => DVec2::Y,
+        180.0 | -180.0 => DVec2::NEG_X,
+        270.0 | -90.0 => DVec2::NEG_Y,
+        degrees => {
+            let (sin, cos) = libm::sincos(degrees.to_radians());
+            DVec2::new(cos, sin)
+        }
+    }
+}
+
+/// What the curves of a drawing have become.
+pub(super) struct Flattened {
+    pub(super) walls: Vec<[DVec2; 2]>,
+    /// How many curves there are, and within what distance of them their walls lie.
+    pub(super) curves: usize,
+    pub(super) tolerance: f64,
+}
+
+impl Flattened {
+    /// A sentence about the curves, if there are any.
+    pub(super) fn note(&self) -> Option<String> {
+        let Flattened { curves, tolerance, .. } = self;
+        (*curves > 0).then(|| {
+            format!("walls lie within {tolerance} of the curves that they stand for (--flatten); curves: {curves}")
+        })
+    }
+}
+
+impl Outlines {
+    /// A pen that draws here what it is told in other coordinates.
+    pub(super) fn pen(&mut self, transform: DAffine2) -> Pen<'_> {
+        Pen::new(self, transform)
+    }
+
+    /// How many lines and curves there are.
+    pub(super) fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// A box that surely holds everything; `None` if there is nothing.
+    pub(super) fn bounds(&self) -> Option<[DVec2; 2]> {
+        let mut bounds: Option<[DVec2; 2]> = None;
+        let mut add = |low: DVec2, high: DVec2| {
+            let [l, h] = bounds.unwrap_or([low, high]);
+            bounds = Some([l.min(low), h.max(high)]);
+        };
+        for piece in &self.pieces {
+            match piece {
+                Piece::Start(p) | Piece::Line(p) => add(*p, *p),
+                Piece::Curve(curve, end) => {
+                    add(*end, *end);
+                    match &**curve {
+                        Curve::Bezier(points) => points.iter().for_each(|p| add(*p, *p)),
+                        Curve::Ellipse(e) => add(e.centre - e.reach(), e.centre + e.reach()),
+                    }
+                }
+            }
+        }
+        bounds
+    }
+
+    /// All walls; those of curves lie within `tolerance` of them, or within a sensible part of the drawing's size.
+    ///
+    /// # Errors
+    ///
+    /// A tolerance for which there would be too many walls.
+    pub(super) fn flatten(&self, tolerance: Option<f64>) -> Result<Flattened, String> {
+        let side = self.bounds().map_or(0.0, |[low, high]| (high - low).max_element());
+        let tolerance = tolerance.unwrap_or_else(|| rounded(side / PARTS_OF_SIDE));
+        let mut walls = Vec::with_capacity(self.pieces.len());
+        let (mut here, mut curves, mut curved) = (DVec2::ZERO, 0, 0.0);
+        for piece in &self.pieces {
+            let end = match piece {
+                Piece::Start(end) => {
+                    here = *end;
+                    continue;
+                }
+                Piece::Line(end) => *end,
+                Piece::Curve(curve, end) => {
+                    let n = if tolerance > 0.0 { curve.steps(tolerance) } else { f64::INFINITY };
+                    curves += 1;
+                    curved += n;
+                    if curved > WALLS_MAX {
+                        let what = format!("within {tolerance} of its curves, the drawing would have more than");
+                        return Err(format!("{what} {WALLS_MAX} walls; give a larger tolerance (--flatten)"));
+                    }
+                    for k in 1..n as u32 {
+                        let p = curve.at(f64::from(k) / n);
+                        walls.push([here, p]);
+                        here = p;
+                    }
+                    *end
+                }
+            };
+            walls.push([here, end]);
+            here = end;
+        }
+        Ok(Flattened { walls, curves, tolerance })
+    }
+}
+
+/// `x` to three digits, as people are told it; above zero.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x).max(f64::MIN_POSITIVE)
+}
+
+impl Curve {
+    /// In how many equal steps of its parameter the curve stays within `tolerance` of its chords.
+    fn steps(&self, tolerance: f64) -> f64 {
+        match self {
+            Curve::Bezier(points) => {
+                let degree = (points.len() - 1) as f64;
+                let bend = |w: &[DVec2]| libm::hypot(w[0].x - 2.0 * w[1].x + w[2].x, w[0].y - 2.0 * w[1].y + w[2].y);
+                let most = points.windows(3).map(bend).fold(0.0, f64::max) * degree * (degree - 1.0);
+                (most / tolerance / 8.0).sqrt().ceil().max(1.0)
+            }
+            Curve::Ellipse(e) => {
+                let n = e.sweep.abs().to_radians() * (e.radius() / tolerance / 8.0).sqrt();
+                // No step is more than a quarter turn, and a full turn is cut at its quarters.
+                let quarters = e.sweep.abs() / 90.0;
+                if quarters == 4.0 { (n / 4.0).ceil().max(1.0) * 4.0 } else { n.max(quarters).ceil().max(1.0) }
+            }
+        }
+    }
+
+    /// The point at `t` between 0 and 1.
+    fn at(&self, t: f64) -> DVec2 {
+        match self {
+            Curve::Bezier(points) => {
+                let mut points = points.clone();
+                for last in (1..points.len()).rev() {
+                    for i in 0..last {
+                        points[i] = points[i] * (1.0 - t) + points[i + 1] * t;
+                    }
+                }
+                points[0]
+            }
+            Curve::Ellipse(e) => e.at(e.from + e.sweep * t),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pen::Drawn;
+    use super::*;
+
+    fn p(x: f64, y: f64) -> DVec2 {
+        DVec2::new(x, y)
+    }
+
+    /// How far `q` is from the nearest wall.
+    fn distance(walls: &[[DVec2; 2]], q: DVec2) -> f64 {
+        let to = |[a, b]: &[DVec2; 2]| {
+            let along = ((q - *a).dot(*b - *a) / (*b - *a).length_squared()).clamp(0.0, 1.0);
+            q.distance(*a + (*b - *a) * along)
+        };
+        walls.iter().map(to).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Some curve of each kind, alone in its drawing.
+    fn curves() -> Vec<Outlines> {
+        let mut all = Vec::new();
+        for transform in [DAffine2::IDENTITY, DAffine2::from_cols(p(2.0, 1.0), p(-0.5, 3.0), p(100.0, -7.0))] {
+            let mut draw = |f: &dyn Fn(&mut Pen<'_>) -> Drawn| {
+                let mut outlines = Outlines::default();
+                f(&mut outlines.pen(transform)).unwrap();
+                all.push(outlines);
+            };
+            draw(&|pen| pen.ellipse(p(1.0, 2.0), p(3.0, 0.0), p(0.0, 0.5)));
+            draw(&|pen| {
+                pen.start(p(1.0, 0.0))?;
+                let e = Ellipse { centre: p(0.0, 0.0), a: p(1.0, 0.0), b: p(0.0, 1.0), from: 0.0, sweep: -200.0 };
+                pen.ellipse_to(e, e.at(-200.0))
+            });
+            for inner in [&[p(0.0, 4.0)][..], &[p(9.0, 4.0), p(-9.0, 4.0)], &[p(9.0, 4.0), p(0.0, 9.0), p(1.0, -9.0)]] {
+                draw(&|pen| pen.start(p(0.0, 0.0)).and_then(|()| pen.bezier_to(inner, p(1.0, 0.5))));
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn walls_lie_within_the_tolerance_of_their_curve() {
+        for outlines in curves() {
+            let Some(Piece::Curve(curve, _)) = outlines.pieces.last() else { panic!() };
+            for tolerance in [1.0, 0.1, 0.01, 1e-4] {
+                let walls = outlines.flatten(Some(tolerance)).unwrap().walls;
+                let far = (0..=5000).map(|k| distance(&walls, curve.at(f64::from(k) / 5000.0))).fold(0.0, f64::max);
+                assert!(far <= tolerance, "{curve:?}: {far} beyond {tolerance}");
+                // Not many times as many walls as needed.
+                assert!(walls.len() <= 8 || far > tolerance / 20.0, "{curve:?}: {far} for {tolerance}");
+                assert!(walls.windows(2).all(|w| w[0][1] == w[1][0]));
+            }
+        }
+    }
+
+    #[test]
+    fn ends_are_exact_and_circles_closed() {
+        let mut outlines = Outlines::default();
+        let mut pen = outlines.pen(DAffine2::IDENTITY);
+        pen.ellipse(p(0.1, 0.2), p(0.3, 0.0), p(0.0, 0.3)).unwrap();
+        let walls = outlines.flatten(Some(1e-3)).unwrap().walls;
+        assert_eq!(walls[0][0], walls[walls.len() - 1][1]);
+        assert_eq!(walls[0][0], p(0.1, 0.2) + p(0.3, 0.0));
+        // The quarters are points of it, as exact as sums are.
+        for q in [p(0.1, 0.2 + 0.3), p(0.1 - 0.3, 0.2), p(0.1, 0.2 - 0.3)] {
+            assert!(walls.iter().any(|w| w[0] == q), "{q}");
+        }
+    }
+
+    #[test]
+    fn tolerances_without_sense_are_refused() {
+        let mut outlines = Outlines::default();
+        outlines.pen(DAffine2::IDENTITY).ellipse(p(0.0, 0.0), p(3.0, 0.0), p(0.0, 3.0)).unwrap();
+        for tolerance in [0.0, -1.0, f64::NAN, 1e-30] {
+            let Err(what) = outlines.flatten(Some(tolerance)) else { panic!("{tolerance} was taken") };
+            assert!(what.contains("give a larger tolerance (--flatten)"), "{what}");
+        }
+        assert_eq!(outlines.flatten(Some(1e9)).unwrap().walls.len(), 4);
+    }
+}

@@ -1,0 +1,157 @@
+//! Entities as lines and curves.
+
+use glam::DVec2;
+
+use super::super::curves::Ellipse;
+use super::super::pen::{Drawn, Pen};
+use super::entity::Entity;
+use super::spline::beziers;
+use crate::read_error::Fault;
+
+/// A bulge below this is none: the arc lies nearer to its chord than this part of the chord's length.
+const BULGE_MIN: f64 = 1e-9;
+
+/// Draws an entity that stands alone, and says whether it is of a kind that is drawn.
+pub(super) fn draw(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<bool, Fault> {
+    let drawn = match entity.kind {
+        "LINE" => {
+            let [from, to] = [point(entity, 10)?, point(entity, 11)?];
+            pen.polyline(&[from, to], false)
+        }
+        "CIRCLE" => {
+            let radius = radius(entity)?;
+            pen.ellipse(point(entity, 10)?, DVec2::new(radius, 0.0), DVec2::new(0.0, radius))
+        }
+        "ARC" => {
+            let radius = radius(entity)?;
+            let [from, to] = [entity.number(50)?, entity.number(51)?];
+            let [a, b] = [DVec2::new(radius, 0.0), DVec2::new(0.0, radius)];
+            arc(pen, Ellipse { centre: point(entity, 10)?, a, b, from, sweep: turn(from, to) })
+        }
+        "ELLIPSE" => {
+            let a = point(entity, 11)?;
+            let b = a.perp() * entity.number(40)? * upside(entity)?;
+            let [from, to] = [entity.or(41, 0.0)?, entity.or(42, std::f64::consts::TAU)?].map(f64::to_degrees);
+            arc(pen, Ellipse { centre: point(entity, 10)?, a, b, from, sweep: turn(from, to) })
+        }
+        "LWPOLYLINE" => {
+            let corners = corners(entity)?;
+            return polyline(entity, &corners, entity.flags(70)? & 1 == 1, pen).map(|()| true);
+        }
+        "SPLINE" => return spline(entity, pen).map(|()| true),
+        _ => return Ok(false),
+    };
+    drawn.map_err(|fault| entity.fault(fault))?;
+    Ok(true)
+}
+
+/// The point whose x has this group code; its y has the code 10 higher.
+pub(super) fn point(entity: &Entity<'_>, code: i32) -> Result<DVec2, Fault> {
+    Ok(DVec2::new(entity.number(code)?, entity.number(code + 10)?))
+}
+
+/// 1 where the entity's z axis points to the eye, -1 where it points away.
+///
+/// # Errors
+///
+/// Another direction: the entity does not lie in the plane.
+pub(super) fn upside(entity: &Entity<'_>) -> Result<f64, Fault> {
+    match [entity.or(210, 0.0)?, entity.or(220, 0.0)?, entity.or(230, 1.0)?] {
+        [0.0, 0.0, z] if z > 0.0 => Ok(1.0),
+        [0.0, 0.0, z] if z < 0.0 => Ok(-1.0),
+        [x, y, z] => {
+            Err(entity.fault(format_args!("lies askew in space, normal to ({x}, {y}, {z}); flatten the drawing")))
+        }
+    }
+}
+
+fn radius(entity: &Entity<'_>) -> Result<f64, Fault> {
+    match entity.number(40)? {
+        radius if radius > 0.0 => Ok(radius),
+        radius => Err(entity.fault(format_args!("radius {radius}; it must be above 0"))),
+    }
+}
+
+/// How far it is from one angle on to another, in degrees above 0 up to a whole turn.
+fn turn(from: f64, to: f64) -> f64 {
+    let turn = (to - from) % 360.0;
+    let turn = if turn <= 0.0 { turn + 360.0 } else { turn };
+    // Angles in radians seldom make a whole turn to the last bit.
+    if (1e-9..360.0 - 1e-9).contains(&turn) { turn } else { 360.0 }
+}
+
+/// An arc alone; one of a whole turn ends where it begins.
+fn arc(pen: &mut Pen<'_>, arc: Ellipse) -> Drawn {
+    let begin = arc.at(arc.from);
+    pen.start(begin)?;
+    pen.ellipse_to(arc, if arc.sweep == 360.0 { begin } else { arc.at(arc.from + arc.sweep) })
+}
+
+/// A corner of a polyline and the bulge of the side behind it: the tangent of a quarter of its arc's angle.
+pub(super) type Corner = (DVec2, f64);
+
+/// The corners of a LWPOLYLINE: each begins with its x.
+fn corners(entity: &Entity<'_>) -> Result<Vec<Corner>, Fault> {
+    let mut corners: Vec<Corner> = Vec::new();
+    for &(code, value) in &entity.groups {
+        let number = || entity.parse(code, value);
+        match (code, corners.last_mut()) {
+            (10, _) => corners.push((DVec2::new(number()?, f64::NAN), 0.0)),
+            (20, Some((p, _))) => p.y = number()?,
+            (42, Some((_, bulge))) => *bulge = number()?,
+            _ => {}
+        }
+    }
+    if let Some(i) = corners.iter().position(|(p, _)| p.y.is_nan()) {
+        return Err(entity.fault(format_args!("corner {i} has an x but no y")));
+    }
+    Ok(corners)
+}
+
+pub(super) fn polyline(entity: &Entity<'_>, corners: &[Corner], closed: bool, pen: &mut Pen<'_>) -> Result<(), Fault> {
+    let [(first, _), ..] = corners else { return Ok(()) };
+    let mut ends: Vec<DVec2> = corners[1..].iter().map(|c| c.0).collect();
+    ends.extend(closed.then_some(*first));
+    pen.start(*first).map_err(|fault| entity.fault(fault))?;
+    for (&(from, bulge), &to) in corners.iter().zip(&ends) {
+        let straight = bulge.abs() < BULGE_MIN || from == to;
+        let drawn = if straight { pen.line_to(to) } else { pen.ellipse_to(bulged(from, to, bulge), to) };
+        drawn.map_err(|fault| entity.fault(fault))?;
+    }
+    Ok(())
+}
+
+/// The circle through `from` and `to` of which the side is a part.
+fn bulged(from: DVec2, to: DVec2, bulge: f64) -> Ellipse {
+    let across = (to - from).perp();
+    let centre = (from + to) / 2.0 + across * ((1.0 - bulge * bulge) / (4.0 * bulge));
+    let a = from - centre;
+    Ellipse { centre, a, b: a.perp(), from: 0.0, sweep: (4.0 * libm::atan(bulge)).to_degrees() }
+}
+
+fn spline(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<(), Fault> {
+    let weights = entity.numbers(41)?;
+    if weights.windows(2).any(|w| w[0] != w[1]) {
+        return Err(entity.fault("has weights that differ (a rational spline); make a polyline of it"));
+    }
+    let [x, y] = [entity.numbers(10)?, entity.numbers(20)?];
+    if x.is_empty() {
+        return Err(entity.fault("has no control points; make a polyline of it"));
+    }
+    if x.len() != y.len() {
+        return Err(entity.fault(format_args!("{} x and {} y of control points", x.len(), y.len())));
+    }
+    let points: Vec<DVec2> = x.into_iter().zip(y).map(DVec2::from).collect();
+    let degree = usize::try_from(entity.flags(71)?).unwrap_or(0);
+    let curves = beziers(degree, &entity.numbers(40)?, &points).map_err(|what| entity.fault(what))?;
+    for (i, curve) in curves.iter().enumerate() {
+        let drawn = if i == 0 { pen.start(curve[0]) } else { Ok(()) };
+        let drawn = drawn.and_then(|()| pen.bezier_to(&curve[1..degree], curve[degree]));
+        drawn.map_err(|fault| entity.fault(fault))?;
+    }
+    // A closed spline's last point is its first one, but for rounding.
+    if entity.flags(70)? & 1 == 1 {
+        pen.close();
+    }
+    Ok(())
+}

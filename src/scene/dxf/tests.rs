@@ -1,0 +1,194 @@
+//! Drawings as a whole, and each kind of entity.
+
+use super::*;
+
+/// Entities as words: `LINE 10=1 20=2`. Blocks come first, as `name: entities`.
+fn file(before: &str, blocks: &[(&str, &str)], entities: &str) -> String {
+    let groups = |words: &str| {
+        let pairs = words.split_whitespace().map(|word| match word.split_once('=') {
+            Some((code, value)) => format!("{code}\n{value}\n"),
+            None => format!("0\n{word}\n"),
+        });
+        pairs.collect::<String>()
+    };
+    let blocks: String = blocks.iter().map(|(n, e)| groups(&format!("BLOCK {n} {e} ENDBLK"))).collect();
+    let section = |name: &str, inside: String| format!("0\nSECTION\n2\n{name}\n{inside}0\nENDSEC\n");
+    let all = [section("BLOCKS", blocks), section("ENTITIES", groups(entities))].concat();
+    format!("{}{all}0\nEOF\n", groups(before))
+}
+
+fn parsed(text: &str) -> Result<Scene, String> {
+    parse(text.as_bytes(), Some(0.01)).map_err(|fault| format!("{}: {}", fault.place, fault.what))
+}
+
+fn walls_of(scene: &Scene) -> Vec<[f64; 4]> {
+    (0..scene.walls().len()).map(|w| scene.ends(w)).map(|[a, b]| [a.x, a.y, b.x, b.y]).collect()
+}
+
+fn walls(blocks: &[(&str, &str)], entities: &str) -> Vec<[f64; 4]> {
+    walls_of(&parsed(&file("", blocks, entities)).unwrap_or_else(|what| panic!("{entities}: {what}")))
+}
+
+const LINE: &str = "LINE 10=1 20=2 11=3 21=5";
+
+/// That all walls' ends lie on a circle, and where the first and the last one end.
+fn on_circle(walls: &[[f64; 4]], centre: [f64; 2], radius: f64) -> [[f64; 2]; 2] {
+    for w in walls {
+        for [x, y] in [[w[0], w[1]], [w[2], w[3]]] {
+            let off = (x - centre[0]).hypot(y - centre[1]) - radius;
+            assert!(off.abs() < 1e-12 * (1.0 + radius), "{w:?} is {off} off");
+        }
+    }
+    let last = walls[walls.len() - 1];
+    [[walls[0][0], walls[0][1]], [last[2], last[3]]]
+}
+
+#[test]
+fn every_kind_of_entity_gives_its_walls() {
+    assert_eq!(walls(&[], LINE), [[1., 2., 3., 5.]]);
+    let corners = "10=0 20=0 10=4 20=0 10=4 20=3";
+    assert_eq!(walls(&[], &format!("LWPOLYLINE {corners}")), [[0., 0., 4., 0.], [4., 0., 4., 3.]]);
+    assert_eq!(walls(&[], &format!("LWPOLYLINE 70=1 {corners}"))[2], [4., 3., 0., 0.]);
+    let vertices = "VERTEX 10=0 20=0 VERTEX 70=16 10=7 20=7 VERTEX 10=4 20=0 VERTEX 10=4 20=3 SEQEND";
+    assert_eq!(walls(&[], &format!("POLYLINE 70=1 {vertices} {LINE}")).len(), 4);
+    let [from, to] = on_circle(&walls(&[], "CIRCLE 10=1 20=2 40=3"), [1., 2.], 3.);
+    assert_eq!((from, to), ([4., 2.], [4., 2.]));
+    let [from, to] = on_circle(&walls(&[], "ARC 10=1 20=2 40=3 50=270 51=90"), [1., 2.], 3.);
+    assert_eq!((from, to), ([1., -1.], [1., 5.]));
+    assert!(walls(&[], "ARC 10=1 20=2 40=3 50=270 51=90").iter().all(|w| w[0] >= 1.0));
+    let ellipse = walls(&[], "ELLIPSE 10=1 20=2 11=0 21=4 40=0.5 41=0 42=6.283185307179586");
+    let round: Vec<_> =
+        ellipse.iter().map(|w| [(w[0] - 1.0) * 2.0, w[1] - 2.0, (w[2] - 1.0) * 2.0, w[3] - 2.0]).collect();
+    let [from, to] = on_circle(&round, [0., 0.], 4.);
+    assert_eq!((from, to), ([0., 4.], [0., 4.]));
+    // A cubic over one span is the Bezier curve of its control points: half way it is at (3, 3).
+    let spline = "SPLINE 70=8 71=3 40=0 40=0 40=0 40=0 40=1 40=1 40=1 40=1 10=0 20=0 10=2 20=4 10=4 20=4 10=6 20=0";
+    let spline = walls(&[], spline);
+    assert_eq!((spline[0][..2].to_vec(), spline[spline.len() - 1][2..].to_vec()), (vec![0., 0.], vec![6., 0.]));
+    assert!(spline.iter().any(|w| w[..2] == [3.0, 3.0]), "{spline:?}");
+}
+
+#[test]
+fn bulges_are_arcs_to_the_right_of_their_chord() {
+    // A half circle, counter-clockwise from (0, 0) to (2, 0), lies below its chord; the other way it lies above.
+    for (bulge, below) in [(1.0, true), (-1.0, false)] {
+        let arc = walls(&[], &format!("LWPOLYLINE 10=0 20=0 42={bulge} 10=2 20=0"));
+        assert_eq!(on_circle(&arc, [1., 0.], 1.), [[0., 0.], [2., 0.]]);
+        assert!(arc[1..].iter().all(|w| (w[1] < 0.0) == below), "{arc:?}");
+    }
+    // A quarter: the tangent of a sixteenth of a turn.
+    let arc = walls(&[], "LWPOLYLINE 70=1 10=1 20=0 42=0.41421356237309503 10=0 20=1");
+    assert_eq!(on_circle(&arc[..arc.len() - 1], [0., 0.], 1.), [[1., 0.], [0., 1.]]);
+    assert_eq!(walls(&[], "LWPOLYLINE 10=0 20=0 42=1e-12 10=2 20=0"), [[0., 0., 2., 0.]]);
+}
+
+#[test]
+fn blocks_are_placed_turned_scaled_and_repeated() {
+    let blocks = [
+        ("2=A 10=1 20=2", LINE),
+        ("2=b", "INSERT 2=a 10=10 20=0 INSERT 2=A 10=0 20=0 41=-1"),
+        ("2=attributes", "INSERT 2=A 66=1 10=0 20=0 ATTRIB 1=x SEQEND"),
+    ];
+    assert_eq!(walls(&blocks, "INSERT 2=a 10=5 20=5"), [[5., 5., 7., 8.]]);
+    assert_eq!(walls(&blocks, "INSERT 2=a 10=5 20=5 50=90"), [[5., 5., 2., 7.]]);
+    assert_eq!(walls(&blocks, "INSERT 2=a 10=5 20=5 41=2 42=-1"), [[5., 5., 9., 2.]]);
+    assert_eq!(walls(&blocks, "INSERT 2=B 10=0 20=1"), [[10., 1., 12., 4.], [0., 1., -2., 4.]]);
+    assert_eq!(walls(&blocks, &format!("INSERT 2=attributes 10=0 20=0 {LINE}")).len(), 2);
+    let array = walls(&blocks, "INSERT 2=a 10=0 20=0 70=2 71=3 44=10 45=100");
+    assert_eq!(
+        array.iter().map(|w| [w[0], w[1]]).collect::<Vec<_>>(),
+        [[0., 0.], [10., 0.], [0., 100.], [10., 100.], [0., 200.], [10., 200.]]
+    );
+}
+
+#[test]
+fn what_is_seen_from_below_is_mirrored() {
+    assert_eq!(walls(&[], "LWPOLYLINE 230=-1 10=1 20=2 10=3 20=5"), [[-1., 2., -3., 5.]]);
+    assert_eq!(walls(&[("2=A", LINE)], "INSERT 2=A 230=-1 10=1 20=0"), [[-2., 2., -4., 5.]]);
+    assert_eq!(walls(&[], &format!("{LINE} 230=-1")), [[1., 2., 3., 5.]]);
+    let what = parsed(&file("", &[], "CIRCLE 10=0 20=0 40=1 210=1 220=0 230=0")).unwrap_err();
+    assert!(what.contains("CIRCLE: lies askew in space, normal to (1, 0, 0)"), "{what}");
+}
+
+#[test]
+fn hidden_things_are_no_walls_and_others_are_counted() {
+    let layers = "SECTION 2=TABLES LAYER 2=Off 62=-7 LAYER 2=ice 70=1 LAYER 2=on 62=7 ENDSEC";
+    let blocks = [("2=A", "LINE 8=0 10=1 20=2 11=3 21=5 LINE 8=on 10=1 20=2 11=3 21=6")];
+    let shown = "LINE 8=on 10=1 20=2 11=3 21=5";
+    let hidden = "LINE 8=off 10=0 LINE 8=ICE 10=0 LINE 60=1 LINE 67=1";
+    let text = "TEXT 1=x HATCH TEXT 1=y POINT 10=0 20=0";
+    let scene = parsed(&file(layers, &blocks, &format!("{shown} {hidden} {text} INSERT 2=A 8=on 10=0 20=0"))).unwrap();
+    assert_eq!(scene.walls().len(), 3);
+    let notes = [
+        "the drawing does not say what a unit is (no $INSUNITS)",
+        "hidden entities, which are no walls: 4",
+        "passed over: 1 HATCH, 2 TEXT",
+    ];
+    assert_eq!(scene.notes(), notes);
+}
+
+#[test]
+fn units_are_told() {
+    let unit = |header: &str| {
+        parsed(&file(&format!("SECTION 2=HEADER {header} ENDSEC"), &[], LINE)).unwrap().notes()[0].clone()
+    };
+    assert_eq!(unit("9=$ACADVER 1=AC1024 9=$INSUNITS 70=4"), "a unit is 1 mm ($INSUNITS 4)");
+    assert_eq!(unit("9=$INSUNITS 70=6"), "a unit is 1 m ($INSUNITS 6)");
+    assert_eq!(unit("9=$INSUNITS 70=0"), "the drawing does not say what a unit is ($INSUNITS 0)");
+}
+
+#[test]
+fn a_point_on_the_layer_anchor_is_the_anchor() {
+    let point = "POINT 8=Anchor 10=0.1 20=7";
+    let anchor = |blocks: &[(&str, &str)], entities: &str| parsed(&file("", blocks, entities)).map(|s| s.anchor());
+    assert_eq!(anchor(&[], &format!("{LINE} POINT 10=1 20=1 {point}")), Ok(Some(DVec2::new(0.1, 7.0))));
+    assert_eq!(anchor(&[("2=A", point)], "INSERT 2=A 10=0 20=1"), Ok(Some(DVec2::new(0.1, 8.0))));
+    let two = anchor(&[], &format!("{point} {point}")).unwrap_err();
+    assert_eq!(two, "line 20: POINT: a second anchor; that of line 12 marks one already, and a scene has one at most");
+    let circle = anchor(&[], "CIRCLE 8=anchor 10=0 20=0 40=1").unwrap_err();
+    assert_eq!(circle, "line 12: CIRCLE: lies on the layer anchor, which is for one POINT, the anchor");
+}
+
+#[test]
+fn faults_name_line_and_entity() {
+    let knots = "40=0 40=0 40=0 40=0 40=1 40=1 40=1 40=1";
+    let points = "10=0 20=0 10=2 20=4 10=4 20=4 10=6 20=0";
+    for (entities, expected) in [
+        ("LINE 10=1 20=2 11=3", "line 12: LINE: no number with the group code 21"),
+        ("LINE 10=1 20=x", "line 12: LINE: group code 20 has the value \"x\"; it must be a number"),
+        ("LINE 10=nan 20=0 11=1 21=1", "line 12: LINE: NaN is not a finite number"),
+        ("LINE 10=1e200 20=0 11=1 21=1", "line 12: LINE: 1e200 is too large for exact products"),
+        ("LINE 67=x", "line 12: LINE: group code 67 has the value \"x\"; it must be a whole number"),
+        ("CIRCLE 10=0 20=0 40=0", "line 12: CIRCLE: radius 0; it must be above 0"),
+        ("LWPOLYLINE 10=0 10=1 20=3", "line 12: LWPOLYLINE: corner 0 has an x but no y"),
+        ("POLYLINE 70=64 SEQEND", "line 12: POLYLINE: is a mesh in space; explode it into lines"),
+        ("INSERT 2=no 10=0 20=0", "line 12: INSERT: the drawing has no block \"no\""),
+        (
+            &format!("SPLINE 71=3 {knots} 41=1 41=2 {points}"),
+            "line 12: SPLINE: has weights that differ (a rational spline)",
+        ),
+        (&format!("SPLINE 71=3 {knots} 11=0 21=0"), "line 12: SPLINE: has no control points; make a polyline of it"),
+        (&format!("SPLINE 71=2 {knots} {points}"), "line 12: SPLINE: 8 knots for 4 control points; degree 2 needs"),
+        (&format!("SPLINE 71=-3 {knots} {points}"), "line 12: SPLINE: degree 0; it must be from 1 to 11"),
+    ] {
+        let what = parsed(&file("", &[], entities)).unwrap_err();
+        assert!(what.contains(expected), "{entities}: {what}");
+    }
+    let itself = parsed(&file("", &[("2=A", "INSERT 2=a 10=0 20=0")], "INSERT 2=A 10=0 20=0")).unwrap_err();
+    assert!(itself.contains("INSERT: blocks lie in each other more than 64 deep"), "{itself}");
+    assert!(parsed("AutoCAD Binary DXF\r\n\u{1a}\0").unwrap_err().contains("save the drawing as ASCII DXF"));
+}
+
+#[test]
+fn drawings_that_blow_up_are_refused() {
+    let names: Vec<(String, String)> = (1..40)
+        .map(|i| (format!("2=B{i}"), format!("INSERT 2=B{0} 10=0 20=0 INSERT 2=B{0} 10=1 20=0", i - 1)))
+        .collect();
+    let mut blocks = vec![("2=B0", LINE)];
+    blocks.extend(names.iter().map(|(n, e)| (n.as_str(), e.as_str())));
+    let what = parsed(&file("", &blocks, "INSERT 2=B39 10=0 20=0")).unwrap_err();
+    assert!(what.contains("with all that is inserted again and again, the drawing is too large"), "{what}");
+    let array = "INSERT 2=E 10=0 20=0 70=1000000000 71=1000000000";
+    let what = parsed(&file("", &[("2=E", "")], array)).unwrap_err();
+    assert!(what.contains("the drawing is too large"), "{what}");
+}

@@ -1,0 +1,252 @@
+//! Images of maps, PNG and PGM, as a bit for each pixel.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use super::cells::SIDE_MAX;
+use super::excerpt;
+use crate::read_error::{Fault, Place, ReadError, read_bytes};
+
+/// How many pixels an image may have: an eighth of that are the bytes that it takes.
+const PIXELS_MAX: usize = 1 << 28;
+
+/// The same for interlaced ones, which have to be held as a whole.
+const INTERLACED_MAX: usize = 1 << 24;
+
+/// A pixel; all values are from 0, black or transparent, to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pixel {
+    /// The mean of its colours.
+    pub(super) shade: f64,
+    /// How opaque it is, if it has an alpha channel, and how many colours it has besides.
+    pub(super) alpha: Option<(f64, f64)>,
+}
+
+/// A bit for each pixel, from the upper left one on, row by row.
+pub(super) struct Bits {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    words: Vec<u64>,
+}
+
+impl Bits {
+    pub(super) fn get(&self, x: usize, y: usize) -> bool {
+        let i = y * self.width + x;
+        self.words[i / 64] >> (i % 64) & 1 == 1
+    }
+}
+
+/// Reads an image and asks of each of its pixels whether it is set.
+pub(super) fn read(path: &Path, set: impl FnMut(Pixel) -> bool) -> Result<Bits, ReadError> {
+    parse(&read_bytes(path)?, set).map_err(|fault| fault.in_file(path))
+}
+
+fn parse(bytes: &[u8], set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> {
+    match bytes {
+        [0x89, b'P', b'N', b'G', ..] => png(bytes, set),
+        [b'P', b'5' | b'2', ..] => pgm(bytes, set),
+        _ => Err(fault("neither PNG nor PGM; save the image as one of them")),
+    }
+}
+
+fn fault(what: impl Into<String>) -> Fault {
+    Fault::new(Place::default(), what)
+}
+
+/// Room for an image of this size, if it may be as large.
+fn room(width: usize, height: usize) -> Result<Bits, Fault> {
+    let sides = 1..=SIDE_MAX;
+    if !sides.contains(&width) || !sides.contains(&height) || width * height > PIXELS_MAX {
+        let most = format!("each side must have from 1 to {SIDE_MAX} and all together at most {PIXELS_MAX}");
+        return Err(fault(format!("{width} x {height} pixels; {most}")));
+    }
+    Ok(Bits { width, height, words: vec![0; (width * height).div_ceil(64)] })
+}
+
+/// Sets the bits of the pixels that are given in order.
+fn fill(bits: &mut Bits, from: usize, pixels: impl Iterator<Item = Pixel>, set: &mut impl FnMut(Pixel) -> bool) {
+    for (i, pixel) in (from..).zip(pixels) {
+        bits.words[i / 64] |= u64::from(set(pixel)) << (i % 64);
+    }
+}
+
+fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> {
+    let wrong = |e: png::DecodingError| fault(format!("not PNG: {e}"));
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info().map_err(wrong)?;
+    let info = reader.info();
+    let interlaced = info.interlaced;
+    let mut bits = room(info.width as usize, info.height as usize)?;
+    let samples = reader.output_color_type().0.samples();
+    let pixels = |row: &[u8]| row.chunks_exact(samples).map(pixel).collect::<Vec<_>>();
+    let (width, height) = (bits.width, bits.height);
+    if interlaced {
+        if width * height > INTERLACED_MAX {
+            return Err(fault(format!(
+                "interlaced, with more than {INTERLACED_MAX} pixels; save it without interlacing"
+            )));
+        }
+        let mut all = vec![0; width * height * samples];
+        reader.next_frame(&mut all).map_err(wrong)?;
+        fill(&mut bits, 0, pixels(&all).into_iter(), &mut set);
+    } else {
+        for y in 0..height {
+            let Some(row) = reader.next_row().map_err(wrong)? else {
+                return Err(fault(format!("not PNG: the image ends after {y} of {height} rows")));
+            };
+            fill(&mut bits, y * width, pixels(row.data()).into_iter(), &mut set);
+        }
+    }
+    // What ends before its end may have lost more than that.
+    reader.finish().map_err(wrong)?;
+    Ok(bits)
+}
+
+/// A pixel of 8-bit samples: grey or red, green and blue, and alpha behind them if there are two or four.
+fn pixel(samples: &[u8]) -> Pixel {
+    let colours = if samples.len() < 3 { 1 } else { 3 };
+    let sum: f64 = samples[..colours].iter().map(|&s| f64::from(s)).sum();
+    let alpha = samples.get(colours).map(|&a| (f64::from(a) / 255.0, colours as f64));
+    Pixel { shade: sum / colours as f64 / 255.0, alpha }
+}
+
+/// PGM, binary (P5) or as text (P2).
+fn pgm(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> {
+    let mut at = 2;
+    let [width, height, white] = [word(bytes, &mut at), word(bytes, &mut at), word(bytes, &mut at)]
+        .map(|word| word.parse::<u64>().map_err(|_| header(word)));
+    let [width, height, white] = [width?, height?, white?].map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+    if !(1..=65535).contains(&white) {
+        return Err(fault(format!("not PGM: white is {white}; it must be from 1 to 65535")));
+    }
+    if width > SIDE_MAX || height > SIDE_MAX {
+        return room(width, height);
+    }
+    let shade = |value: usize| Pixel { shade: value.min(white) as f64 / white as f64, alpha: None };
+    let short = |has: usize| fault(format!("the image ends after {has} of {} pixels", width * height));
+    if bytes[1] == b'5' {
+        // One white space, and the pixels behind it.
+        let data = bytes.get(at + 1..).unwrap_or_default();
+        let size = if white < 256 { 1 } else { 2 };
+        if data.len() / size < width * height {
+            return Err(short(data.len() / size));
+        }
+        let mut bits = room(width, height)?;
+        let values = data.chunks_exact(size).map(|v| v.iter().fold(0, |sum, &b| sum * 256 + usize::from(b)));
+        fill(&mut bits, 0, values.take(width * height).map(shade), &mut set);
+        return Ok(bits);
+    }
+    // Each pixel takes two bytes at least, but for the last one.
+    if (bytes.len() - at).div_ceil(2) < width * height {
+        return Err(short((bytes.len() - at).div_ceil(2)));
+    }
+    let mut bits = room(width, height)?;
+    for i in 0..width * height {
+        let word = word(bytes, &mut at);
+        if word.is_empty() {
+            return Err(short(i));
+        }
+        let value =
+            word.parse().map_err(|_| fault(format!("pixel {i} is {:?}; it must be a number", excerpt(word))))?;
+        fill(&mut bits, i, std::iter::once(shade(value)), &mut set);
+    }
+    Ok(bits)
+}
+
+fn header(word: &str) -> Fault {
+    let what =
+        format!("not PGM: {:?} stands where the width, the height or the value of white must stand", excerpt(word));
+    fault(what)
+}
+
+/// The next word, behind white space and comments; what is not ASCII is shown as `?`.
+fn word<'a>(bytes: &'a [u8], at: &mut usize) -> &'a str {
+    while let Some(&b) = bytes.get(*at) {
+        if b == b'#' {
+            *at += bytes[*at..].iter().take_while(|&&b| b != b'\n').count();
+        } else if b.is_ascii_whitespace() {
+            *at += 1;
+        } else {
+            break;
+        }
+    }
+    let rest = &bytes[*at..];
+    let length = rest.iter().take_while(|&&b| !b.is_ascii_whitespace() && b != b'#').count();
+    *at += length;
+    std::str::from_utf8(&rest[..length]).unwrap_or("?")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The shades of all pixels, and of each its alpha.
+    fn pixels(bytes: &[u8]) -> Result<(usize, Vec<Pixel>), Fault> {
+        let mut all = Vec::new();
+        let bits = parse(bytes, |p| {
+            all.push(p);
+            p.shade < 0.5
+        })?;
+        for (i, p) in all.iter().enumerate() {
+            assert_eq!(bits.get(i % bits.width, i / bits.width), p.shade < 0.5);
+        }
+        assert_eq!(all.len(), bits.width * bits.height);
+        Ok((bits.width, all))
+    }
+
+    fn grey(shade: f64) -> Pixel {
+        Pixel { shade, alpha: None }
+    }
+
+    fn png_of(colour: png::ColorType, depth: png::BitDepth, width: u32, data: &[u8]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, width, 1);
+        encoder.set_color(colour);
+        encoder.set_depth(depth);
+        encoder.write_header().unwrap().write_image_data(data).unwrap();
+        bytes
+    }
+
+    #[test]
+    fn every_kind_of_image_gives_the_same_pixels() {
+        let expected = (3, vec![grey(0.0), grey(205.0 / 255.0), grey(1.0)]);
+        assert_eq!(pixels(b"P5 3 1 255\n\x00\xcd\xff").unwrap(), expected);
+        assert_eq!(pixels(b"P5\n# CREATOR: map_saver\n3\n1 # size\n65535\n\0\0\xcd\xcd\xff\xff").unwrap(), expected);
+        assert_eq!(pixels(b"P2\n3 1\n255\n0 205\n255").unwrap(), expected);
+        use png::{BitDepth, ColorType};
+        assert_eq!(pixels(&png_of(ColorType::Grayscale, BitDepth::Eight, 3, &[0, 205, 255])).unwrap(), expected);
+        let rgb = [0, 0, 0, 205, 205, 205, 255, 255, 255];
+        assert_eq!(pixels(&png_of(ColorType::Rgb, BitDepth::Eight, 3, &rgb)).unwrap(), expected);
+        assert_eq!(pixels(&png_of(ColorType::Grayscale, BitDepth::One, 3, &[0b0110_0000])).unwrap().1[1], grey(1.0));
+        let colours = pixels(&png_of(ColorType::Rgba, BitDepth::Eight, 1, &[30, 60, 90, 51])).unwrap().1;
+        assert_eq!(colours, [Pixel { shade: 60.0 / 255.0, alpha: Some((0.2, 3.0)) }]);
+    }
+
+    #[test]
+    fn claims_beyond_the_file_are_refused() {
+        let fault = |bytes: &[u8]| pixels(bytes).unwrap_err().what;
+        for magic in ["P5", "P2"] {
+            let all = fault(format!("{magic} 30000 30000 255\n123").as_bytes());
+            assert!(all.contains("of 900000000 pixels"), "{all}");
+            let sides = fault(format!("{magic} 1000000000 1000000000 255\n").as_bytes());
+            assert!(
+                sides.starts_with("1000000000 x 1000000000 pixels; each side must have from 1 to 32768"),
+                "{sides}"
+            );
+            assert!(fault(format!("{magic} 99999999999999999999 1 255\n").as_bytes()).starts_with("not PGM: "));
+            assert!(fault(format!("{magic} 0 5 255\n").as_bytes()).starts_with("0 x 5 pixels; "));
+            assert!(fault(format!("{magic} 3 1 0\n\0\0\0").as_bytes()).contains("white is 0"));
+            assert!(fault(format!("{magic} 3 x 255\n").as_bytes()).contains("\"x\" stands where"));
+        }
+        assert_eq!(fault(b"P5 3 1 255\n\x00\xcd"), "the image ends after 2 of 3 pixels");
+        assert_eq!(fault(b"P2 3 1 255\n0 205 "), "the image ends after 2 of 3 pixels");
+        assert_eq!(fault(b"P2 2 1 255\n0 -1"), "pixel 1 is \"-1\"; it must be a number");
+        assert_eq!(fault(b"BM"), "neither PNG nor PGM; save the image as one of them");
+        let mut huge = png_of(png::ColorType::Grayscale, png::BitDepth::Eight, 3, &[0, 205, 255]);
+        let cut = huge.len() - 30;
+        assert!(fault(&huge[..cut]).starts_with("not PNG: "));
+        huge[16] = 0x3b;
+        assert!(!fault(&huge).is_empty());
+    }
+}

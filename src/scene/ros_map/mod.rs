@@ -1,0 +1,287 @@
+//! Maps of ROS's `map_server`: the borders between occupied and other cells are the walls.
+
+mod yaml;
+
+use std::path::Path;
+
+use glam::DVec2;
+
+use super::cells::borders;
+use super::image::{self, Pixel};
+use super::{Scene, Unknown};
+use crate::read_error::{Fault, Place, ReadError, read_text};
+use yaml::values;
+
+/// How many walls a map may have. Images as small as a few bytes can hold far more.
+const WALLS_MAX: usize = 1 << 23;
+
+/// What the file says of its image.
+#[derive(Debug, PartialEq)]
+struct Map {
+    image: String,
+    /// Metres a pixel.
+    resolution: f64,
+    /// Where the lower left corner of the image is, in metres.
+    origin: DVec2,
+    /// By how much the image is turned about it, in radians.
+    yaw: f64,
+    negate: bool,
+    occupied: f64,
+    free: f64,
+    mode: Mode,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mode {
+    Trinary,
+    Scale,
+    Raw,
+}
+
+/// What a cell is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cell {
+    Occupied,
+    Unknown,
+    /// Free, or occupied by a chance that is not enough.
+    Other,
+}
+
+/// Reads a map and the image that it names, relative to the map's own folder. Coordinates are metres in the map's frame,
+/// y upwards. What lies around the image is no cell: its outer edge is no wall.
+pub(super) fn read(path: &Path, unknown: Unknown) -> Result<Scene, ReadError> {
+    let text = read_text(path)?;
+    let map = parse(&text).map_err(|fault| fault.in_file(path))?;
+    let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
+    let mut unknowns = 0;
+    let bits = image::read(&image, |pixel| match map.cell(pixel) {
+        Cell::Occupied => true,
+        Cell::Unknown => {
+            unknowns += 1;
+            unknown == Unknown::Blocked
+        }
+        Cell::Other => false,
+    })?;
+    let (sin, cos) = libm::sincos(map.yaw);
+    let turn = DVec2::new(cos, sin);
+    let corner = |[x, y]: [usize; 2]| {
+        let p = DVec2::new(x as f64, (bits.height - y) as f64) * map.resolution;
+        // A map that is not turned has no roundings but those of its steps.
+        map.origin + if map.yaw == 0.0 { p } else { turn.rotate(p) }
+    };
+    let blocked = |x, y| bits.get(x, y);
+    let walls: Vec<_> = borders(bits.width, bits.height, &blocked).take(WALLS_MAX + 1).collect();
+    if walls.len() > WALLS_MAX {
+        let what = format!("more than {WALLS_MAX} walls; is this the image of a map?");
+        return Err(Fault::new(Place::default(), what).in_file(&image));
+    }
+    let scene = Scene::new(walls.into_iter().map(|ends| ends.map(corner)));
+    let mut scene = scene.map_err(|fault| Fault::from(fault).in_file(path))?;
+    scene.note("a unit is 1 m; y points up");
+    if unknowns > 0 {
+        let (are, other) = match unknown {
+            Unknown::Free => ("no obstacles", "blocked"),
+            Unknown::Blocked => ("obstacles", "free"),
+        };
+        scene.note(format!("unknown cells, which are {are} (the other way: --unknown {other}): {unknowns}"));
+    }
+    Ok(scene)
+}
+
+impl Map {
+    /// What `map_server` makes of a pixel.
+    fn cell(&self, pixel: Pixel) -> Cell {
+        let shade = match (pixel.alpha, self.mode) {
+            // As it always did, it counts alpha among the colours here.
+            (Some((alpha, colours)), Mode::Trinary) => (pixel.shade * colours + alpha) / (colours + 1.0),
+            _ => pixel.shade,
+        };
+        if self.mode == Mode::Raw {
+            return match (shade * 255.0).round() as u8 {
+                100 => Cell::Occupied,
+                101.. => Cell::Unknown,
+                _ => Cell::Other,
+            };
+        }
+        let chance = if self.negate { shade } else { 1.0 - shade };
+        let seen_through = pixel.alpha.is_some_and(|(alpha, _)| alpha < 1.0);
+        match self.mode {
+            Mode::Scale if seen_through => Cell::Unknown,
+            _ if chance > self.occupied => Cell::Occupied,
+            Mode::Trinary if chance >= self.free => Cell::Unknown,
+            _ => Cell::Other,
+        }
+    }
+}
+
+fn parse(text: &str) -> Result<Map, Fault> {
+    let values = values(text)?;
+    let get = |key: &str| {
+        let value = values.iter().find(|(k, _)| k == key).map(|(_, value)| value);
+        value.ok_or_else(|| Fault::new(Place::default(), format!("no {key}; a map needs {}", KEYS.join(", "))))
+    };
+    let chance = |key: &str| {
+        let right = "a number from 0 to 1";
+        let value = get(key)?;
+        let [chance] = value.numbers(key, right)?;
+        if (0.0..=1.0).contains(&chance) { Ok(chance) } else { Err(value.fault(key, right)) }
+    };
+    let image = get("image")?.text("image", "the name of a .png or .pgm file")?.to_owned();
+    let [resolution] = get("resolution")?.numbers("resolution", METRES)?;
+    if resolution <= 0.0 {
+        return Err(get("resolution")?.fault("resolution", METRES));
+    }
+    let [x, y, yaw] = get("origin")?.numbers("origin", "three numbers, [x, y, yaw]")?;
+    let right = "0 or 1";
+    let negate = match get("negate")?.text("negate", right)? {
+        "0" | "false" | "False" => false,
+        "1" | "true" | "True" => true,
+        _ => return Err(get("negate")?.fault("negate", right)),
+    };
+    let mode = match values.iter().find(|(k, _)| k == "mode") {
+        None => Mode::Trinary,
+        Some((_, value)) => match value.text("mode", MODES)? {
+            "trinary" => Mode::Trinary,
+            "scale" => Mode::Scale,
+            "raw" => Mode::Raw,
+            _ => return Err(value.fault("mode", MODES)),
+        },
+    };
+    let (occupied, free) = (chance("occupied_thresh")?, chance("free_thresh")?);
+    Ok(Map { image, resolution, origin: DVec2::new(x, y), yaw, negate, occupied, free, mode })
+}
+
+const KEYS: [&str; 6] = ["image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"];
+const METRES: &str = "a number of metres a pixel, above 0";
+const MODES: &str = "trinary, scale or raw";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MAP: &str = "image: map.pgm\nresolution: 0.05\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n\
+        free_thresh: 0.196\n";
+
+    fn fault(text: &str) -> String {
+        let fault = parse(text).unwrap_err();
+        format!("{}: {}", fault.place, fault.what)
+    }
+
+    /// The walls of an image of this size for these values of the map.
+    fn scene(text: &str, pgm: &[u8], unknown: Unknown) -> Scene {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("map.pgm"), pgm).unwrap();
+        let path = folder.path().join("map.yaml");
+        std::fs::write(&path, text).unwrap();
+        read(&path, unknown).unwrap()
+    }
+
+    fn walls(scene: &Scene) -> Vec<[f64; 4]> {
+        (0..scene.walls().len()).map(|w| scene.ends(w)).map(|[a, b]| [a.x, a.y, b.x, b.y]).collect()
+    }
+
+    #[test]
+    fn the_lower_left_corner_is_the_origin_and_y_points_up() {
+        // Two columns, three rows; the upper left cell is occupied.
+        let pgm = b"P5 2 3 255\n\x00\xfe\xfe\xfe\xfe\xfe";
+        let text = MAP.replace("0.05", "0.5");
+        assert_eq!(walls(&scene(&text, pgm, Unknown::Free)), [[-1.0, 3.0, -0.5, 3.0], [-0.5, 3.5, -0.5, 3.0]]);
+        // Turned by a quarter, to the left of the origin.
+        let turned = text.replace(", 0.0]", ", 1.5707963267948966]");
+        let found = walls(&scene(&turned, pgm, Unknown::Free));
+        for (wall, right) in found.iter().zip([[-2.0, 2.0, -2.0, 2.5], [-2.5, 2.5, -2.0, 2.5]]) {
+            assert!(wall.iter().zip(right).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn unknown_cells_are_counted_and_as_is_asked() {
+        // Free, unknown, occupied.
+        let pgm = b"P2 3 1 255 254 205 0";
+        let free = scene(MAP, pgm, Unknown::Free);
+        let blocked = scene(MAP, pgm, Unknown::Blocked);
+        assert_eq!((walls(&free)[0][0], walls(&blocked)[0][0]), (-1.0 + 0.1, -1.0 + 0.05));
+        assert_eq!(
+            free.notes(),
+            [
+                "a unit is 1 m; y points up",
+                "unknown cells, which are no obstacles (the other way: --unknown blocked): 1"
+            ]
+        );
+        assert_eq!(blocked.notes()[1], "unknown cells, which are obstacles (the other way: --unknown free): 1");
+        assert_eq!(scene(MAP, b"P2 1 1 255 254", Unknown::Free).notes().len(), 1);
+    }
+
+    #[test]
+    fn modes_and_thresholds_are_those_of_the_map_server() {
+        use Cell::{Occupied, Other, Unknown};
+        let cell = |text: &str, shade: u8, alpha: Option<(f64, f64)>| {
+            parse(text).unwrap().cell(Pixel { shade: f64::from(shade) / 255.0, alpha })
+        };
+        let all = |text: &str| [0, 89, 90, 100, 101, 205, 206, 254].map(|shade| cell(text, shade, None));
+        // Above 0.65: up to 89 of 255; below 0.196: from 206 on.
+        assert_eq!(all(MAP), [Occupied, Occupied, Unknown, Unknown, Unknown, Unknown, Other, Other]);
+        let negate = MAP.replace("negate: 0", "negate: 1");
+        assert_eq!(all(&negate), [Other, Unknown, Unknown, Unknown, Unknown, Occupied, Occupied, Occupied]);
+        assert_eq!(all(&MAP.replace("negate: 0", "negate: true")), all(&negate));
+        let scale = format!("{MAP}mode: scale\n");
+        assert_eq!(all(&scale), [Occupied, Occupied, Other, Other, Other, Other, Other, Other]);
+        let raw = format!("{MAP}mode: raw\n");
+        assert_eq!(all(&raw), [Other, Other, Other, Occupied, Unknown, Unknown, Unknown, Unknown]);
+        assert_eq!(cell(&scale, 0, Some((0.5, 1.0))), Unknown);
+        assert_eq!(cell(&scale, 0, Some((1.0, 1.0))), Occupied);
+        // Alpha counts as a colour in the mode trinary: black is half as dark in grey.
+        assert_eq!([cell(MAP, 0, Some((1.0, 3.0))), cell(MAP, 0, Some((1.0, 1.0)))], [Occupied, Unknown]);
+    }
+
+    #[test]
+    fn files_of_either_ros_are_read() {
+        let map = parse(MAP).unwrap();
+        assert_eq!((map.resolution, map.origin, map.mode), (0.05, DVec2::new(-1.0, 2.0), Mode::Trinary));
+        let other = "# saved\n---\nmode: trinary\nfree_thresh: 0.196\nimage: 'map.pgm'\nresolution: 5e-2\nnegate: 0\n\
+            origin:\n  - -1\n  - 2.0\n  - 0\noccupied_thresh: 0.65\nextra: {a: [1, {b: 2}], c: d}\nlast: x\n...\n";
+        assert_eq!(parse(other).unwrap(), map);
+    }
+
+    #[test]
+    fn faults_name_line_and_key() {
+        let with = |from: &str, to: &str| fault(&MAP.replace(from, to));
+        for (what, expected) in [
+            (fault(""), ": no image; a map needs image, resolution, origin, negate, occupied_thresh, free_thresh"),
+            (with("negate: 0\n", ""), ": no negate; a map needs image, resolution, origin, negate"),
+            (with("0.05", "-1"), "line 2: resolution is \"-1\"; it must be a number of metres a pixel, above 0"),
+            (with("0.05", ".nan"), "line 2: resolution is \".nan\"; it must be a number"),
+            (with("0.05", "inf"), "line 2: resolution is \"inf\"; it must be a number"),
+            (with("0.05", "[1]"), "line 2: resolution is \"[1]\"; it must be a number"),
+            (with("[-1.0, 2.0, 0.0]", "[1, 2]"), "line 3: origin is \"[1, 2]\"; it must be three numbers, [x, y, yaw]"),
+            (with("negate: 0", "negate: 2"), "line 4: negate is \"2\"; it must be 0 or 1"),
+            (with("0.196", "1.5"), "line 6: free_thresh is \"1.5\"; it must be a number from 0 to 1"),
+            (with("map.pgm", "~"), "line 1: image is \"\"; it must be the name of a .png or .pgm file"),
+            (fault(&format!("{MAP}mode: best\n")), "line 7: mode is \"best\"; it must be trinary, scale or raw"),
+            (fault(&format!("{MAP}negate: 0\n")), "line 7: negate a second time"),
+            (with("negate: 0", "a: &b 1\nnegate: *b"), "line 5: an alias (*); write the value out"),
+            (fault("- 1\n"), "line 1: a list; a map is written as lines of a key and its value"),
+            (fault("walls"), "line 1: no map; a map is written as lines"),
+            (fault("a: [1\nb"), "not YAML: "),
+        ] {
+            assert!(what.contains(expected), "{what} is not {expected}");
+        }
+    }
+
+    #[test]
+    fn the_image_is_named_if_it_is_at_fault() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.yaml");
+        std::fs::write(&path, MAP).unwrap();
+        let e = read(&path, Unknown::Free).unwrap_err().to_string();
+        assert!(e.starts_with("cannot read ") && e.contains("map.pgm: No such file"), "{e}");
+        std::fs::write(folder.path().join("map.pgm"), b"P5 1000000000 1000000000 255\n").unwrap();
+        let e = read(&path, Unknown::Free).unwrap_err().to_string();
+        assert!(e.contains("map.pgm: 1000000000 x 1000000000 pixels; each side must have from 1 to 32768"), "{e}");
+        // Noise has more borders than a map.
+        let noise: Vec<u8> = (0..3000 * 3000).map(|i| if (i % 3000 + i / 3000) % 2 == 0 { 0 } else { 254 }).collect();
+        std::fs::write(folder.path().join("map.pgm"), [b"P5 3000 3000 255\n", &noise[..]].concat()).unwrap();
+        let e = read(&path, Unknown::Free).unwrap_err().to_string();
+        assert!(e.contains("map.pgm: more than 8388608 walls"), "{e}");
+    }
+}

@@ -1,0 +1,142 @@
+//! What of an element's style matters for walls: whether it is shown, and whether it is cut.
+
+use roxmltree::{Document, Node};
+use simplecss::{AttributeOperator, Declaration, DeclarationTokenizer, Element, PseudoClass, Rule, StyleSheet};
+
+/// The properties that matter.
+const PROPERTIES: [&str; 5] = ["display", "visibility", "clip-path", "mask", "transform"];
+
+/// How an element looks, as far as that matters.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Looks {
+    /// Neither it nor anything in it is shown.
+    pub(super) removed: bool,
+    /// Whether it is shown, if it says so itself.
+    pub(super) visible: Option<bool>,
+    /// It has a clip path or a mask.
+    pub(super) clipped: bool,
+    /// A style sheet moves it.
+    pub(super) moved: bool,
+}
+
+/// The rules of all style sheets in a document that say anything that matters, the more specific ones last.
+pub(super) struct Styles<'a>(Vec<Rule<'a>>);
+
+impl<'a> Styles<'a> {
+    pub(super) fn of(document: &'a Document<'_>) -> Self {
+        let mut sheet = StyleSheet::new();
+        for node in document.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "style"))) {
+            node.children().filter_map(|n| n.text()).for_each(|text| sheet.parse_more(text));
+        }
+        sheet.rules.retain(|rule| rule.declarations.iter().any(|d| PROPERTIES.contains(&d.name)));
+        Styles(sheet.rules)
+    }
+
+    pub(super) fn looks(&self, node: Node<'_, '_>) -> Looks {
+        let mut looks = Looks::default();
+        for name in ["display", "visibility", "clip-path", "mask"] {
+            if let Some(value) = node.attribute(name) {
+                looks.set(name, value);
+            }
+        }
+        let matching: Vec<&Declaration<'_>> = self
+            .0
+            .iter()
+            .filter(|rule| rule.selector.matches(&Styled(node)))
+            .flat_map(|rule| &rule.declarations)
+            .collect();
+        let inline = node.attribute("style").unwrap_or_default();
+        let inline: Vec<Declaration<'_>> = DeclarationTokenizer::from(inline).collect();
+        // What is important comes last and so wins.
+        for important in [false, true] {
+            for d in matching.iter().copied().chain(&inline).filter(|d| d.important == important) {
+                looks.set(d.name, d.value);
+            }
+        }
+        looks
+    }
+}
+
+impl Looks {
+    fn set(&mut self, name: &str, value: &str) {
+        let none = value.trim() == "none";
+        match name {
+            "display" => self.removed = none,
+            "visibility" => {
+                self.visible = match value.trim() {
+                    "visible" => Some(true),
+                    "hidden" | "collapse" => Some(false),
+                    _ => None,
+                }
+            }
+            "clip-path" | "mask" => self.clipped |= !none,
+            "transform" => self.moved = !none,
+            _ => {}
+        }
+    }
+}
+
+/// An element as style sheets select it.
+struct Styled<'a, 'i>(Node<'a, 'i>);
+
+impl Element for Styled<'_, '_> {
+    fn parent_element(&self) -> Option<Self> {
+        self.0.parent_element().map(Styled)
+    }
+
+    fn prev_sibling_element(&self) -> Option<Self> {
+        self.0.prev_sibling_element().map(Styled)
+    }
+
+    fn has_local_name(&self, name: &str) -> bool {
+        self.0.tag_name().name() == name
+    }
+
+    fn attribute_matches(&self, local_name: &str, operator: AttributeOperator<'_>) -> bool {
+        self.0.attribute(local_name).is_some_and(|value| operator.matches(value))
+    }
+
+    fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
+        matches!(class, PseudoClass::FirstChild) && self.0.prev_sibling_element().is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cascade_decides() {
+        let text = r##"<svg xmlns="http://www.w3.org/2000/svg">
+            <style>.off { display: none } #on { display: inline } g > .pale { visibility: hidden; fill: red }
+                .cut { clip-path: url(#c) } .firm { display: none !important } .moved { transform: rotate(3deg) }</style>
+            <a class="off"/><b class="off" id="on"/><c class="off" style="fill:red;display:inline"/>
+            <g><d class="pale x"/></g><e class="cut"/><f class="firm" style="display:inline"/>
+            <h display="none"/><i display="none" style="display:block"/><j style="visibility:visible" mask="none"/>
+            <k mask="url(#m)"/><l class="moved"/><m style="visibility:inherit" class="pale"/></svg>"##;
+        let document = Document::parse(text).unwrap();
+        let styles = Styles::of(&document);
+        let looks = |name: &str| {
+            let node = document.descendants().find(|n| n.tag_name().name() == name).unwrap();
+            styles.looks(node)
+        };
+        let plain = Looks::default();
+        let removed = Looks { removed: true, ..plain };
+        for (name, expected) in [
+            ("a", removed),
+            ("b", plain),
+            ("c", plain),
+            ("d", Looks { visible: Some(false), ..plain }),
+            ("e", Looks { clipped: true, ..plain }),
+            ("f", removed),
+            ("h", removed),
+            ("i", plain),
+            ("j", Looks { visible: Some(true), ..plain }),
+            ("k", Looks { clipped: true, ..plain }),
+            ("l", Looks { moved: true, ..plain }),
+            ("m", plain),
+        ] {
+            assert_eq!(looks(name), expected, "{name}");
+        }
+    }
+}
