@@ -29,6 +29,10 @@ pub(crate) fn listen() -> Result<(), Failure> {
 /// Has Ctrl-C stop `job`, the one evaluation of this process.
 pub(crate) fn stops(job: &Arc<Job>) {
     let _ = JOB.set(job.clone());
+    // It may have come before there was a job.
+    if STOPPED.load(Ordering::SeqCst) {
+        job.stop();
+    }
 }
 
 /// An error once Ctrl-C was pressed, so that half-written files are dropped.

@@ -21,9 +21,9 @@ const ROWS: usize = 1 << 13;
 ///
 /// # Errors
 ///
-/// A file that cannot be read or whose columns are others, a trace that is there twice, and those of
+/// A file that cannot be read or whose columns are others, a trace that is there twice, more or fewer `rows`, and those of
 /// [`check_output`](super::check_output).
-pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)]) -> Result<(), WriteError> {
+pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)], rows: u64) -> Result<(), WriteError> {
     let mut table = Table::<ResultColumns>::new(to, WholeFile::create(to)?)?;
     notes.iter().for_each(|(key, value)| table.note(key, value));
     // Files are opened when it is their turn, so that there may be more of them than can be open at a time.
@@ -33,6 +33,7 @@ pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)]) -> R
     }
     waiting.sort_unstable_by(|a, b| b.cmp(a));
     let mut open: Vec<Source> = Vec::new();
+    let mut written = 0;
     loop {
         // The source whose next trace is the first, and how far it goes before it is another's turn.
         let first = (0..open.len()).min_by_key(|&i| open[i].next());
@@ -54,9 +55,13 @@ pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)]) -> R
         let count = others.map_or(traces.len(), |next| traces.partition_point(|&trace| trace < next));
         table.write(&source.rows.slice(source.at, count))?;
         source.at += count;
+        written += count as u64;
         if !source.refill()? {
             open.swap_remove(first);
         }
+    }
+    if written != rows {
+        return Err(WriteError::source(to, format!("its parts have {written} rows instead of {rows}")));
     }
     table.complete()?.finish_durably()
 }
@@ -159,9 +164,11 @@ mod tests {
             (0..3).map(|k| written(&at(&format!("{k}.parquet")), (0..40_000).filter(block(k)))).collect();
         let none = written(&at("none.parquet"), 0..0);
         let all = [&parts[2], &none, &parts[0], &parts[1]].map(Clone::clone);
-        merge_results(&all, &at("merged.parquet"), &[("a", "b".to_owned())]).unwrap();
+        merge_results(&all, &at("merged.parquet"), &[("a", "b".to_owned())], 40_000).unwrap();
+        let short = merge_results(&all, &at("no.parquet"), &[], 40_001).unwrap_err().to_string();
+        assert!(short.ends_with("its parts have 40000 rows instead of 40001"), "{short}");
         assert!(rows(&at("merged.parquet")) == rows(&whole));
-        let twice = merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &[]).unwrap_err().to_string();
+        let twice = merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &[], 0).unwrap_err().to_string();
         assert!(twice.ends_with("trace 500 is in another file too"), "{twice}");
         assert!(!at("no.parquet").exists());
     }
@@ -170,7 +177,7 @@ mod tests {
     fn what_cannot_be_read_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
-        let fails = |path: &Path| merge_results(&[path.to_owned()], &at("no.parquet"), &[]).unwrap_err().to_string();
+        let fails = |path: &Path| merge_results(&[path.to_owned()], &at("no.parquet"), &[], 1).unwrap_err().to_string();
         assert!(fails(&at("gone.parquet")).contains("gone.parquet: No such file"));
         std::fs::write(at("text.parquet"), "no table at all").unwrap();
         assert!(fails(&at("text.parquet")).starts_with(&format!("cannot read {}", at("text.parquet").display())));

@@ -1,15 +1,54 @@
 //! Reading and checking a study's file.
 
+use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
+use glam::DVec2;
+
 use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
+use crate::geometry::check_point;
 
 /// The study that is run when no file is given, and the template of new ones.
 pub const EXAMPLE: &str = include_str!("example.toml");
 
 /// The most blocks that a study can have.
 const MOST_BLOCKS: u64 = 1 << 20;
+
+/// How many points the traces of a block may have: some 4 GB, with all that belongs to them.
+const MOST_POINTS: u64 = 1 << 27;
+
+/// The most steps of a trace: its points are numbered in 31 bits.
+const MOST_STEPS: u32 = (1 << 31) - 2;
+
+impl WalkPlan {
+    /// Whether its numbers can be walked with.
+    pub(super) fn check(&self) -> Result<(), PlanError> {
+        let (step, steps) = match *self {
+            WalkPlan::Uniform { step, steps, .. }
+            | WalkPlan::Gaussian { step, steps, .. }
+            | WalkPlan::Persistent { step, steps, .. }
+            | WalkPlan::Waypoints { step, steps, .. } => (step, steps),
+            WalkPlan::Given { .. } => return Ok(()),
+        };
+        if !(step > 0.0 && check_point(DVec2::new(step, 0.0)).is_ok()) {
+            return Err(PlanError::new(format!(
+                "walk.step: {step} is no length of a step; give a number above 0, in the scene's unit"
+            )));
+        }
+        if !(1..=MOST_STEPS).contains(&steps) {
+            return Err(PlanError::new(format!(
+                "walk.steps: a trace cannot have {steps} steps; give a whole number from 1 to {MOST_STEPS}"
+            )));
+        }
+        match *self {
+            WalkPlan::Persistent { turn, .. } if !(0.0..=PI).contains(&turn) => Err(PlanError::new(format!(
+                "walk.turn: a heading cannot turn by {turn}; give radians, from 0 to pi ({PI})"
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
 
 impl Plan {
     /// Reads a study's file (TOML) and checks everything that can be checked without its scene.
@@ -71,6 +110,11 @@ impl Plan {
             }
             _ => {}
         }
+        let one = matches!(self.scene.anchor, None | Some(AnchorPlan::One(_)));
+        if self.is_given() && !one {
+            return err("scene.anchor: given traces go by one anchor".into());
+        }
+        self.walk.check()?;
         let run = &self.run;
         if run.traces == 0 || run.block == 0 {
             return err("run: `traces` and `block` must be at least 1".into());
@@ -78,6 +122,15 @@ impl Plan {
         if self.blocks() > MOST_BLOCKS {
             let least = run.traces.div_ceil(MOST_BLOCKS);
             return err(format!("run.block: {} traces need blocks of at least {least}", run.traces));
+        }
+        if let Some(steps) = self.walk.steps() {
+            let most = (MOST_POINTS / (u64::from(steps) + 1)).max(1);
+            if u64::from(run.block) > most {
+                return err(format!(
+                    "run.block: blocks of {} traces of {steps} steps take too much memory; at most {most} will do",
+                    run.block
+                ));
+            }
         }
         let tallies = &self.tallies;
         if !(tallies.confidence > 0.0 && tallies.confidence < 1.0) {

@@ -195,7 +195,8 @@ impl Default for TallyPlan {
     }
 }
 
-/// When to stop before all traces are done. Looked at after each block, in the order of the blocks.
+/// When to stop before all traces are done. Looked at after each block, in the order of the blocks; the time, after as many as
+/// are computed at once.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct UntilPlan {

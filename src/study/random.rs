@@ -7,7 +7,8 @@
 use glam::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 
-/// How many blocks are made at once, so that several are made in one instruction.
+/// How many blocks are made at once, so that several are made in one instruction. The order of the words depends on it, and so
+/// do all traces.
 const BLOCKS: usize = 8;
 
 /// The low half of a word.

@@ -194,10 +194,15 @@ fn evaluate(
     Ok(records)
 }
 
+/// Before that many traces no study is certain enough: of fewer, errors are not known well.
+const LEAST: u64 = 100;
+
 /// Whether the study ends after a block, given the moments of the greatest length so far.
 fn stopped(study: &Study, longest: &Moments, is_last: bool) -> Stopped {
     let plan = study.plan();
-    if let Some(most) = plan.until.relative_error {
+    if let Some(most) = plan.until.relative_error
+        && longest.count >= LEAST.max(study.models().len() as u64)
+    {
         let mean = Confidence::new(plan.tallies.confidence).mean(longest);
         if mean.high.is_some_and(|high| high - mean.value <= most * mean.value.abs()) {
             return Stopped::RelativeError;

@@ -1,5 +1,6 @@
 //! How far a study is, in memory and as a file.
 
+use std::fmt;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,15 +18,23 @@ const MAGIC: &[u8] = b"tautline study state 1\n";
 /// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Shard {
-    /// Which part, from 0.
-    pub number: u32,
-    /// How many parts there are.
-    pub of: u32,
+    number: u32,
+    of: u32,
 }
 
 impl Shard {
     /// The whole.
     pub const WHOLE: Shard = Shard { number: 0, of: 1 };
+
+    /// Part `number`, counted from 0, of so many; `None` if there is no such part.
+    pub fn new(number: u32, of: u32) -> Option<Shard> {
+        (number < of).then_some(Shard { number, of })
+    }
+
+    /// How many parts there are.
+    pub fn of(self) -> u32 {
+        self.of
+    }
 
     /// Its block number `index`, counted from 0.
     pub fn block(self, index: u64) -> u64 {
@@ -35,6 +44,12 @@ impl Shard {
     /// How many of `blocks` blocks are its own.
     pub fn count(self, blocks: u64) -> u64 {
         (blocks + u64::from(self.of) - 1).saturating_sub(u64::from(self.number)) / u64::from(self.of)
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
     }
 }
 
@@ -51,6 +66,9 @@ pub struct State {
     pub(super) tallies: Tallies,
 }
 
+/// What is said of a state whose study is another one.
+const FOREIGN: &str = "it belongs to another study: the plan, the scene or the traces are others";
+
 /// Why a state file cannot be used.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {what}", .path.display())]
@@ -64,11 +82,13 @@ pub struct StateError {
 impl State {
     /// Nothing is done.
     pub fn new(study: &Study, shard: Shard) -> Self {
+        // There may be more parts than blocks.
+        let nothing_to_do = shard.count(study.plan().blocks()) == 0;
         State {
             identity: study.identity().to_owned(),
             shard,
             done: 0,
-            stopped: Stopped::Unfinished,
+            stopped: if nothing_to_do { Stopped::Complete } else { Stopped::Unfinished },
             seconds: 0.0,
             tallies: Tallies::default(),
         }
@@ -82,6 +102,11 @@ impl State {
     /// How many of its blocks are done.
     pub fn done(&self) -> u64 {
         self.done
+    }
+
+    /// How many traces its blocks have.
+    pub fn traces(&self) -> u64 {
+        self.tallies.counts.traces.sum
     }
 
     /// Whether there is nothing left to do, and why.
@@ -134,7 +159,7 @@ impl State {
         }
         let state: State = postcard::from_bytes(payload).map_err(|e| fault(&format!("damaged: {e}")))?;
         if state.identity != study.identity() {
-            return Err(fault("it belongs to another study: the plan, the scene or the traces have changed since"));
+            return Err(fault(FOREIGN));
         }
         Ok(state)
     }
@@ -144,15 +169,26 @@ impl State {
 ///
 /// # Errors
 ///
-/// Shards that belong to different studies, are not all there, are there twice, or are not done.
+/// Shards that belong to another study, are not all there, are there twice, or are not done; and none at all.
 pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, StateError> {
     shards.sort_by_key(|(_, state)| state.shard);
     let fault = |path: &Path, what: String| Err(StateError { path: path.to_owned(), what });
     let mut whole = State::new(study, Shard::WHOLE);
     let blocks = study.plan().blocks();
-    let of = shards.first().map_or(1, |(_, state)| state.shard.of);
+    let Some(of) = shards.first().map(|(_, state)| state.shard.of) else {
+        return fault(Path::new(""), "no shards are given".to_owned());
+    };
+    if let [(_, state)] = shards.as_slice()
+        && (of, state.stopped == Stopped::Unfinished, &state.identity) == (1, false, &whole.identity)
+    {
+        // A study that was not shared out, which may have stopped before its last block.
+        return Ok(shards.remove(0).1);
+    }
     for (i, (path, state)) in shards.iter().enumerate() {
         let Shard { number, of: parts } = state.shard;
+        if state.identity != whole.identity {
+            return fault(path, FOREIGN.to_owned());
+        }
         if parts != of {
             return fault(path, format!("this is one of {parts} shards, others are one of {of}"));
         }

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use super::estimate::Confidence;
 use super::opened::Study;
-use super::state::State;
+use super::state::{Shard, State};
 use super::summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Summary, Survival,
     SurvivalPoint,
 };
-use super::tally::{Counts, Moments, SCALARS, Setting};
+use super::tally::{Counts, Moments, SCALARS, Setting, of_rank};
 use crate::rope::Side;
 
 /// Which quantiles are given.
@@ -32,6 +32,7 @@ impl State {
             steps: counts.looks.sum - counts.traces.sum,
             events: counts.events,
             blocks: counts.traces.blocks,
+            shard: (self.shard != Shard::WHOLE).then(|| self.shard.to_string()),
             stopped: self.stopped,
             scalars: scalars(&confidence, &moments, counts),
             histograms: (0..2).map(|i| histogram(&confidence, setting, counts, i)).collect(),
@@ -46,9 +47,11 @@ impl State {
 
 fn scalars(confidence: &Confidence, moments: &[Moments], counts: &Counts) -> Vec<Scalar> {
     let traces = counts.traces.sum;
+    // The least number below or at which that share of them lies.
+    let rank = |share: f64| ((share * traces as f64).ceil() as u64).max(1);
     let quantile = |i: usize, share: f64| match i {
-        0 | 1 => counts.sketches[i].quantile(share).ok().flatten().unwrap_or(0.0),
-        _ => of_rank(&counts.values[i - 2], traces, share),
+        0 | 1 => counts.lengths[i].of_rank(rank(share)),
+        _ => of_rank(&counts.values[i - 2], rank(share)).unwrap_or(0) as f64,
     };
     let scalar = |(i, (name, moments)): (usize, (&&str, &Moments))| {
         let estimate = |share| {
@@ -72,37 +75,28 @@ fn scalars(confidence: &Confidence, moments: &[Moments], counts: &Counts) -> Vec
     SCALARS.iter().zip(moments).enumerate().map(scalar).collect()
 }
 
-/// The least value below or at which that share of the traces lies.
-fn of_rank(values: &BTreeMap<u64, u64>, traces: u64, share: f64) -> f64 {
-    let rank = ((share * traces as f64).ceil() as u64).max(1);
-    let mut below = 0;
-    let reached = values.iter().find(|&(_, &count)| {
-        below += count;
-        below >= rank
-    });
-    reached.or(values.iter().next_back()).map_or(0.0, |(&value, _)| value as f64)
-}
-
 fn histogram(confidence: &Confidence, setting: &Setting, counts: &Counts, i: usize) -> Histogram {
     let bin = |(&bin, &count): (&u64, &u64)| Bin { bin, count, share: confidence.share(count, counts.traces.sum) };
     Histogram { name: SCALARS[i].to_owned(), width: setting.bin, bins: counts.bins[i].iter().map(bin).collect() }
 }
 
+/// For each limit the share of ropes that were never longer up to a step, or up to their trace's end if that came before.
 fn survival(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<Survival> {
     let traces = counts.traces.sum;
     let curve = |(&limit, exceeded): (&f64, &BTreeMap<u64, u64>)| {
+        let still = |longer: u64| confidence.share(traces - longer, traces);
         let mut longer = 0;
         let point = |(i, &step): (usize, &u64)| {
             longer += exceeded.get(&(i as u64)).copied().unwrap_or(0);
-            SurvivalPoint { step, share: confidence.share(traces - longer, traces) }
+            SurvivalPoint { step, share: still(longer) }
         };
-        Survival { limit, curve: setting.times.iter().enumerate().map(point).collect() }
+        let before = setting.times.iter().enumerate().take_while(|&(_, &step)| step < counts.longest_trace);
+        let mut curve: Vec<SurvivalPoint> = before.map(point).collect();
+        // How long given traces are is only known in the end.
+        curve.push(SurvivalPoint { step: counts.longest_trace, share: still(exceeded.values().sum()) });
+        Survival { limit, curve }
     };
-    let mut curves: Vec<Survival> = setting.limits.iter().zip(&counts.exceeded).map(curve).collect();
-    if counts.longest_trace > 0 {
-        curves.iter_mut().for_each(|c| c.curve.retain(|point| point.step <= counts.longest_trace));
-    }
-    curves
+    setting.limits.iter().zip(&counts.exceeded).map(curve).collect()
 }
 
 fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<Obstacle> {
@@ -133,10 +127,13 @@ fn ropes(confidence: &Confidence, setting: &Setting, counts: &Counts, most: usiz
     let rope = |(key, count, at_most): (&Vec<u32>, u64, u64)| {
         let (anchor, contacts) = key.split_first().expect("a rope has an anchor");
         let side = |&contact: &u32| if contact % 2 == 1 { Side::Right } else { Side::Left };
+        let at_most = at_most.min(counts.traces.sum);
+        // As low as the lower count may be, as high as the higher one.
+        let [lower, higher] = [count, at_most].map(|count| confidence.share(count, counts.traces.sum));
         CommonRope {
             count,
-            at_most: at_most.min(counts.traces.sum),
-            share: confidence.share(count, counts.traces.sum),
+            at_most,
+            share: Estimate { high: higher.high, ..lower },
             anchor: setting.models[*anchor as usize].anchor().into(),
             wraps: contacts.iter().map(|c| vertices[*c as usize / 2].into()).collect(),
             sides: contacts.iter().map(|c| side(c).name().to_owned()).collect(),

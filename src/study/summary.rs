@@ -22,6 +22,9 @@ pub struct Summary {
     pub blocks: u64,
     /// Why no more blocks are.
     pub stopped: Stopped,
+    /// Which shard this is, `K/N` with K from 0; `None` for the whole study.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<String>,
     /// One number a trace: its distribution over the traces.
     pub scalars: Vec<Scalar>,
     /// Histograms of the final length and of the greatest.
@@ -42,13 +45,13 @@ pub struct Summary {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stopped {
-    /// All traces are done.
+    /// All traces are done; of a shard, all its own.
     Complete,
     /// The mean is as certain as was asked for.
     RelativeError,
     /// The time was over.
     Seconds,
-    /// It has not ended: it was interrupted, or is one part of several.
+    /// It has not ended.
     Unfinished,
 }
 

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use tautline::output::{WholeFile, WriteError};
 use tautline::study::{Plan, State, Study};
 
+use super::parts::TRACES;
 use crate::cli::failure::Failure;
 
 /// What a folder remembers of its study: enough to go on with it.
@@ -16,6 +17,14 @@ struct Remembered {
     plan: Plan,
     /// The folder from which the plan's files are named.
     base: PathBuf,
+}
+
+/// Where the study's files are.
+#[derive(Debug, clap::Args)]
+pub(crate) struct BaseArgs {
+    /// The folder from which the study's file names scene and traces, if it is another than when the study began
+    #[arg(long, value_name = "DIR")]
+    base: Option<PathBuf>,
 }
 
 /// The folder in which a study lives.
@@ -32,6 +41,9 @@ impl Folder {
             return Err(Failure::input(anyhow!(
                 "{shown} holds a study already: go on with it by `tautline study resume {shown}`, or give another --out"
             )));
+        }
+        if let Some(rows) = [TRACES, "traces"].iter().map(|name| path.join(name)).find(|rows| rows.exists()) {
+            return Err(Failure::input(anyhow!("{} is there already; give another --out", rows.display())));
         }
         fs::create_dir_all(path).map_err(|e| Failure::input(anyhow!("cannot make {}: {e}", path.display())))?;
         Ok(folder)
@@ -72,18 +84,36 @@ impl Folder {
         serde_json::from_str(&text).map_err(|e| Failure::input(anyhow!("{}: {e}", file.display())))
     }
 
-    /// The folder from which the plan's files are named.
-    pub(super) fn base(&self) -> Result<PathBuf, Failure> {
-        Ok(self.remembered()?.base)
+    /// Opens the study and its state, which are there.
+    pub(super) fn open(path: &Path, base: &BaseArgs) -> Result<(Self, Study, State), Failure> {
+        let folder = Folder::at(path);
+        let (study, _) = folder.study(base)?;
+        let state = folder.state(&study)?;
+        Ok((folder, study, state))
     }
 
-    /// Opens the study and its state, which are there.
-    pub(super) fn open(path: &Path) -> Result<(Self, Study, State), Failure> {
-        let folder = Folder { path: path.to_owned() };
-        let Remembered { plan, base } = folder.remembered()?;
-        let study = Study::open(plan, &base)?;
-        let state = State::load(&folder.state_path(), &study)?;
-        Ok((folder, study, state))
+    /// Opens the study, and tells the folder from which its files are named.
+    pub(super) fn study(&self, base: &BaseArgs) -> Result<(Study, PathBuf), Failure> {
+        let Remembered { plan, base: began } = self.remembered()?;
+        let folder = base.base.clone().unwrap_or(began);
+        let study = Study::open(plan, &folder).map_err(|e| match &base.base {
+            None => Failure::input(anyhow!(
+                "{e}\n(the study's files are named from {}; if they have moved, give --base DIR)",
+                folder.display()
+            )),
+            Some(_) => e.into(),
+        })?;
+        Ok((study, folder))
+    }
+
+    /// How far a study is whose folder this is.
+    pub(super) fn state(&self, study: &Study) -> Result<State, Failure> {
+        Ok(State::load(&self.state_path(), study)?)
+    }
+
+    /// A study's folder that is there.
+    pub(super) fn at(path: &Path) -> Self {
+        Folder { path: path.to_owned() }
     }
 
     pub(super) fn save(&self, state: &State) -> Result<(), WriteError> {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use tautline::output::{ResultWriter, WriteError, merge_results};
 use tautline::rope::TraceRecord;
+use tautline::study::{State, Stopped};
 
 use crate::cli::failure::Failure;
 
@@ -27,16 +28,20 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// Goes on after the first `done` blocks of the study in `folder`: what was written of others is dropped. `None` if all is
-    /// in its place.
-    pub(super) fn open(folder: &Path, done: u64, notes: Vec<(&'static str, String)>) -> Result<Option<Self>, Failure> {
+    /// Goes on where `state` does, of the study in `folder`: what was written of other blocks is dropped. `None` if the study
+    /// is done and all is in its place.
+    pub(super) fn open(
+        folder: &Path,
+        state: &State,
+        notes: Vec<(&'static str, String)>,
+    ) -> Result<Option<Self>, Failure> {
         let (whole, folder) = (folder.join(TRACES), folder.join("traces"));
         let failed = |e: std::io::Error| Failure::internal(anyhow!("cannot write {}: {e}", folder.display()));
         let gone = folder.with_file_name(GONE);
         if gone.exists() {
             fs::remove_dir_all(gone).map_err(failed)?;
         }
-        if whole.exists() && !folder.exists() {
+        if state.stopped() != Stopped::Unfinished && whole.exists() && !folder.exists() {
             return Ok(None);
         }
         fs::create_dir_all(&folder).map_err(failed)?;
@@ -45,7 +50,8 @@ impl Parts {
             let number = name.strip_suffix(".parquet").map(|stem| stem.trim_start_matches('.').split('.').next());
             let first = number.flatten().and_then(|n| n.parse::<u64>().ok());
             // Hidden files are those that were under way when the program was killed.
-            if first.is_some_and(|first| first >= done) || (name.starts_with('.') && name.contains(".parquet.")) {
+            if first.is_some_and(|first| first >= state.done()) || (name.starts_with('.') && name.contains(".parquet."))
+            {
                 fs::remove_file(folder.join(name)).map_err(failed)?;
             }
         }
@@ -64,18 +70,18 @@ impl Parts {
 
     /// Puts the rows since the last time in their place.
     pub(super) fn close(&mut self) -> Result<(), WriteError> {
-        self.current.take().map_or(Ok(()), ResultWriter::finish)
+        self.current.take().map_or(Ok(()), |rows| rows.complete()?.finish_durably())
     }
 
-    /// Puts all rows into one file, once the study is done.
-    pub(super) fn finish(mut self) -> Result<(), Failure> {
+    /// Puts all rows into one file, once the study is done: those of so many traces.
+    pub(super) fn finish(mut self, traces: u64) -> Result<(), Failure> {
         self.close()?;
         let failed = |e: std::io::Error| Failure::internal(anyhow!("cannot read {}: {e}", self.folder.display()));
         let mut parts = Vec::new();
         for entry in fs::read_dir(&self.folder).map_err(failed)? {
             parts.push(entry.map_err(failed)?.path());
         }
-        merge_results(&parts, &self.whole, &self.notes)?;
+        merge_results(&parts, &self.whole, &self.notes, traces)?;
         // Gone at once: were only some of them there, the next run would take them for all.
         let gone = self.folder.with_file_name(GONE);
         fs::rename(&self.folder, &gone).and_then(|()| fs::remove_dir_all(&gone)).map_err(failed)

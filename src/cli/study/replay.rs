@@ -7,7 +7,7 @@ use tautline::engine::{Engine, Job, Reference};
 use tautline::output::{check_output, write_events};
 use tautline::picture::Drawing;
 
-use super::folder::Folder;
+use super::folder::{BaseArgs, Folder};
 use crate::cli::failure::Failure;
 use crate::cli::look::{Look, Target, write};
 use crate::cli::print;
@@ -17,6 +17,8 @@ use crate::cli::summary::short;
 pub(crate) struct Args {
     /// The study's folder
     folder: PathBuf,
+    #[command(flatten)]
+    base: BaseArgs,
     /// The trace's number
     #[arg(long, value_name = "I")]
     trace: u64,
@@ -31,9 +33,9 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let (_, study, _) = Folder::open(&args.folder)?;
+    let (_, study, _) = Folder::open(&args.folder, &args.base)?;
     let plan = study.plan();
-    if args.trace >= plan.run.traces {
+    if !plan.is_given() && args.trace >= plan.run.traces {
         let last = plan.run.traces - 1;
         return Err(Failure::input(anyhow!(
             "--trace: the study's traces are 0 to {last}, so there is no {}",

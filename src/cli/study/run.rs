@@ -11,7 +11,7 @@ use tautline::picture;
 use tautline::report::Environment;
 use tautline::study::{EXAMPLE, Plan, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go};
 
-use super::folder::Folder;
+use super::folder::{BaseArgs, Folder};
 use super::parts::Parts;
 use super::show;
 use crate::cli::engine::EngineArgs;
@@ -55,6 +55,8 @@ pub(crate) struct ResumeArgs {
     /// The study's folder
     folder: PathBuf,
     #[command(flatten)]
+    base: BaseArgs,
+    #[command(flatten)]
     engine: EngineArgs,
     /// Print the summary as one JSON document
     #[arg(long)]
@@ -65,8 +67,7 @@ fn shard(text: &str) -> Result<Shard, String> {
     let wrong = || "give K/N with K from 0 to N - 1, such as 0/4".to_owned();
     let (number, of) = text.split_once('/').ok_or_else(wrong)?;
     let [number, of] = [number, of].map(|n| n.parse::<u32>().map_err(|_| wrong()));
-    let shard = Shard { number: number?, of: of? };
-    if shard.number < shard.of { Ok(shard) } else { Err(wrong()) }
+    Shard::new(number?, of?).ok_or_else(wrong)
 }
 
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
@@ -80,7 +81,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     plan.run.seed = args.seed.unwrap_or(plan.run.seed);
     // What was replaced is checked again.
     let plan = plan.checked()?;
-    if args.shard.of > 1 && (plan.until.relative_error.is_some() || plan.until.seconds.is_some()) {
+    if args.shard.of() > 1 && (plan.until.relative_error.is_some() || plan.until.seconds.is_some()) {
         return Err(Failure::input(anyhow!(
             "--shard: a shard cannot know when the whole study is certain enough; leave out [until]"
         )));
@@ -93,7 +94,11 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         return dry_run(&study, args);
     }
     let stem = args.file.as_deref().and_then(Path::file_stem).map_or("example".into(), |s| s.to_string_lossy());
-    let part = if args.shard == Shard::WHOLE { String::new() } else { format!("-{}", args.shard.number) };
+    let part = if args.shard == Shard::WHOLE {
+        String::new()
+    } else {
+        format!("-{}", args.shard.to_string().replace('/', "-of-"))
+    };
     let out = args.out.clone().unwrap_or_else(|| Folder::unused(&format!("{stem}-study{part}")));
     let _writing = Writing::begin();
     interrupt::check()?;
@@ -108,7 +113,7 @@ pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     interrupt::listen()?;
     let _writing = Writing::begin();
     interrupt::check()?;
-    let (folder, study, state) = Folder::open(&args.folder)?;
+    let (folder, study, state) = Folder::open(&args.folder, &args.base)?;
     proceed(&folder, &study, state, &args.engine, args.json)
 }
 
@@ -130,9 +135,10 @@ fn proceed(
     let progress = Progress::new(if steps > 0 { traces } else { 0 });
     progress.begin(traces, steps);
     let mut parts = match study.plan().outputs.traces {
-        true => Parts::open(folder.path(), state.done(), provenance(study, name, &on))?,
+        true => Parts::open(folder.path(), &state, provenance(study, name, &on))?,
         false => None,
     };
+    let traces_before = state.traces();
     let (start, mut saved, mut written) = (Instant::now(), Instant::now(), state.done());
     let outcome = with_progress(&progress, &job, || {
         go(study, &mut engines, &mut state, &job, |state, records, added| {
@@ -149,6 +155,10 @@ fn proceed(
             Ok::<(), Failure>(())
         })
     });
+    if let Err(RunError::Caller(failure)) = outcome {
+        // Rows may be lost that the state counts: what was saved before stands.
+        return Err(failure);
+    }
     parts.as_mut().map_or(Ok(()), Parts::close)?;
     folder.save(&state)?;
     let spent = match outcome {
@@ -164,17 +174,23 @@ fn proceed(
         Err(RunError::Plan(error)) => return Err(error.into()),
         Err(RunError::Caller(failure)) => return Err(failure),
     };
-    parts.map_or(Ok(()), Parts::finish)?;
-    let run = cost(&state, name, &on, start.elapsed(), &spent, job.steps());
+    parts.map_or(Ok(()), |parts| parts.finish(state.traces()))?;
+    let done = [state.traces() - traces_before, job.steps()];
+    let run = cost(&state, name, &on, start.elapsed(), &spent, done);
     conclude(folder, study, &state, &run, as_json)
 }
 
 /// The engines, one for each anchor, and in words what they run on.
+///
+/// The engine `note` is refused: its ropes are wrong on purpose, and an answer does not tell what computed it.
 fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn Engine + 's>>, String), Failure> {
     let mut on = String::new();
     let mut engines = Vec::new();
     for model in study.models() {
         let (engine, place) = args.open(model)?;
+        if engine.name() == "note" {
+            return Err(Failure::input(anyhow!("--engine: studies are exact, which note is not; give another engine")));
+        }
         engines.push(engine);
         on = place;
     }
@@ -195,13 +211,20 @@ pub(super) fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static
 }
 
 /// What the run cost and where it ran.
-fn cost(state: &State, engine: &str, on: &str, took: Duration, spent: &Spent, steps: u64) -> serde_json::Value {
+fn cost(
+    state: &State,
+    engine: &str,
+    on: &str,
+    took: Duration,
+    spent: &Spent,
+    [traces, steps]: [u64; 2],
+) -> serde_json::Value {
     let here = Environment::here(None);
     let seconds = took.as_secs_f64();
     json!({
         "version": here.version, "commit": here.commit, "engine": engine, "on": on, "processor": here.processor, "os": here.os,
-        "threads": here.threads, "shard": format!("{}/{}", state.shard().number, state.shard().of),
-        "steps": steps, "seconds": seconds, "steps_per_second": steps as f64 / seconds,
+        "threads": here.threads, "shard": state.shard().to_string(),
+        "traces": traces, "steps": steps, "seconds": seconds, "steps_per_second": steps as f64 / seconds,
         "seconds_of_all_runs": state.seconds(),
         "spent": {
             "drawing_beside": spent.drawn, "waiting_for_traces": spent.waited, "evaluating": spent.evaluated,
@@ -281,7 +304,7 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
         study.models().len(),
     );
     if let Some((traces, took)) = first.filter(|&(traces, _)| traces > 0) {
-        let share = plan.run.traces as f64 / f64::from(args.shard.of) / traces as f64;
+        let share = plan.run.traces as f64 / f64::from(args.shard.of()) / traces as f64;
         let all = Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX);
         text += &format!("about {}, going by the first {traces} of the traces\n", show::duration(all));
     }

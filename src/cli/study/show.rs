@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use tautline::study::{Estimate, Stopped, Summary};
 
-use super::folder::Folder;
+use super::folder::{BaseArgs, Folder};
 use crate::cli::failure::Failure;
 use crate::cli::summary::{grouped, short};
 use crate::cli::{print, print_json};
@@ -15,13 +15,15 @@ use crate::cli::{print, print_json};
 pub(crate) struct Args {
     /// The study's folder
     folder: PathBuf,
+    #[command(flatten)]
+    base: BaseArgs,
     /// Print the summary as one JSON document
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let (_, study, state) = Folder::open(&args.folder)?;
+    let (_, study, state) = Folder::open(&args.folder, &args.base)?;
     let summary = state.summary(&study);
     if args.json {
         return print_json(&serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?);
@@ -45,7 +47,8 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     let [traces, steps, events] = [summary.traces, summary.steps, summary.events].map(grouped);
     line(format_args!("{traces} traces, {steps} steps, {events} events; {why}"));
     if let Some(seconds) = run.and_then(|run| run["seconds"].as_f64()) {
-        let rate = summary.traces as f64 / seconds;
+        // Those of earlier runs took other seconds.
+        let rate = run.and_then(|run| run["traces"].as_f64()).unwrap_or(0.0) / seconds;
         line(format_args!(
             "{} on {} threads' time: {} traces/s",
             duration(Duration::from_secs_f64(seconds)),

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use rustc_hash::FxHashMap as HashMap;
 use serde::{Deserialize, Serialize};
-use sketches_ddsketch::{Config, DDSketch};
 
 use super::follow::{ends_of_steps, follow};
+use super::lengths::Lengths;
 use super::ropes::Ropes;
 use super::setting::Setting;
 use super::{Batches, Moments, SCALARS, Sizes};
@@ -51,7 +51,7 @@ pub(crate) struct CellCounts {
 }
 
 /// Counts of some blocks.
-#[derive(Clone, Serialize, Deserialize)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Counts {
     pub traces: Sizes,
     /// The numbers of steps after which a rope was looked at: one more for each trace than it has steps.
@@ -61,8 +61,8 @@ pub(crate) struct Counts {
     pub longest_trace: u64,
     /// For the final and the greatest length: how many traces have one in each bin.
     pub bins: [BTreeMap<u64, u64>; 2],
-    /// The same as quantile sketches.
-    pub sketches: [DDSketch; 2],
+    /// The same in classes fine enough for quantiles.
+    pub lengths: [Lengths; 2],
     /// For the other scalars: how many traces have each value.
     pub values: [BTreeMap<u64, u64>; SCALARS.len() - 2],
     /// For each limit: how many ropes first became longer after so many of the times of the survival curve had gone by.
@@ -71,26 +71,6 @@ pub(crate) struct Counts {
     pub touched: BTreeMap<u32, Touched>,
     pub wound: BTreeMap<u32, Wound>,
     pub cells: BTreeMap<u32, CellCounts>,
-}
-
-impl Default for Counts {
-    fn default() -> Self {
-        let sketch = || DDSketch::new(Config::defaults());
-        Counts {
-            traces: Sizes::default(),
-            looks: Sizes::default(),
-            events: 0,
-            longest_trace: 0,
-            bins: Default::default(),
-            sketches: [sketch(), sketch()],
-            values: Default::default(),
-            exceeded: Vec::new(),
-            ropes: Ropes::default(),
-            touched: BTreeMap::new(),
-            wound: BTreeMap::new(),
-            cells: BTreeMap::new(),
-        }
-    }
 }
 
 impl Counts {
@@ -110,9 +90,9 @@ impl Counts {
             for (moments, value) in moments.iter_mut().zip(lengths.into_iter().chain(values.map(|v| v as f64))) {
                 moments.add(value);
             }
-            for ((bins, sketch), length) in counts.bins.iter_mut().zip(&mut counts.sketches).zip(lengths) {
+            for ((bins, classes), length) in counts.bins.iter_mut().zip(&mut counts.lengths).zip(lengths) {
                 *bins.entry((length / setting.bin) as u64).or_default() += 1;
-                sketch.add(length);
+                classes.add(length);
             }
             for (counts, value) in counts.values.iter_mut().zip(values) {
                 *counts.entry(value).or_default() += 1;
@@ -204,31 +184,44 @@ impl Counts {
         fn add<K: Ord>(to: &mut BTreeMap<K, u64>, from: BTreeMap<K, u64>) {
             from.into_iter().for_each(|(key, count)| *to.entry(key).or_default() += count);
         }
-        self.traces.merge(&other.traces);
-        self.looks.merge(&other.looks);
-        self.events += other.events;
-        self.longest_trace = self.longest_trace.max(other.longest_trace);
-        self.bins.iter_mut().zip(other.bins).for_each(|(to, from)| add(to, from));
-        self.values.iter_mut().zip(other.values).for_each(|(to, from)| add(to, from));
-        self.exceeded.resize_with(self.exceeded.len().max(other.exceeded.len()), BTreeMap::new);
-        self.exceeded.iter_mut().zip(other.exceeded).for_each(|(to, from)| add(to, from));
-        for (to, from) in self.sketches.iter_mut().zip(&other.sketches) {
-            to.merge(from).expect("all sketches are made in the same way");
-        }
-        self.ropes.merge(other.ropes);
-        for (vertex, from) in other.touched {
+        // Taken apart, so that nothing that is counted is forgotten here.
+        let Counts {
+            traces,
+            looks,
+            events,
+            longest_trace,
+            bins,
+            lengths,
+            values,
+            exceeded,
+            ropes,
+            touched,
+            wound,
+            cells,
+        } = other;
+        self.traces.merge(&traces);
+        self.looks.merge(&looks);
+        self.events += events;
+        self.longest_trace = self.longest_trace.max(longest_trace);
+        self.bins.iter_mut().zip(bins).for_each(|(to, from)| add(to, from));
+        self.lengths.iter_mut().zip(lengths).for_each(|(to, from)| to.merge(from));
+        self.values.iter_mut().zip(values).for_each(|(to, from)| add(to, from));
+        self.exceeded.resize_with(self.exceeded.len().max(exceeded.len()), BTreeMap::new);
+        self.exceeded.iter_mut().zip(exceeded).for_each(|(to, from)| add(to, from));
+        self.ropes.merge(ropes);
+        for (vertex, from) in touched {
             let to = self.touched.entry(vertex).or_default();
             to.wraps.merge(&from.wraps);
             to.steps.merge(&from.steps);
         }
-        for (obstacle, from) in other.wound {
+        for (obstacle, from) in wound {
             let to = self.wound.entry(obstacle).or_default();
             to.left += from.left;
             to.right += from.right;
             to.turns += from.turns;
             to.squares += from.squares;
         }
-        for (cell, from) in other.cells {
+        for (cell, from) in cells {
             let to = self.cells.entry(cell).or_default();
             to.visits.merge(&from.visits);
             to.lengths.merge(&from.lengths);

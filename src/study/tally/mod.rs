@@ -6,6 +6,7 @@
 mod batches;
 mod counts;
 mod follow;
+mod lengths;
 mod moments;
 mod ropes;
 mod setting;
@@ -17,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 pub(super) use batches::{Batches, Sizes};
 pub(super) use counts::{CellCounts, Counts, Touched, Traced, Wound};
+pub(super) use lengths::of_rank;
 pub(super) use moments::Moments;
 pub(super) use setting::Setting;
 

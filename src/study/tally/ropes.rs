@@ -10,8 +10,8 @@ const ROPES_A_BLOCK: usize = 256;
 /// A taut rope: its anchor's number, then for each contact twice the wall end's number, and one more if it lies right.
 pub(crate) type Key = Vec<u32>;
 
-/// Counts of ropes. In each block the most common ropes are counted and the others left out, so that memory stays bounded;
-/// what may be missing from a count is known.
+/// Counts of ropes. In each block the most common ropes are counted and the others left out, so that memory grows slowly: by
+/// no more than these a block, and in fact by those that were not common before. What may be missing from a count is known.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Ropes {
     counts: BTreeMap<Key, u64>,

@@ -15,6 +15,7 @@ const TIMES: u64 = 100;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cells {
     pub low: DVec2,
+    pub high: DVec2,
     pub cell: f64,
     pub columns: u32,
     pub rows: u32,
@@ -27,18 +28,20 @@ impl Cells {
         let longer = size.max_element();
         let cell = if longer > 0.0 { longer / f64::from(most) } else { 1.0 };
         let [columns, rows] = [size.x, size.y].map(|side| ((side / cell).ceil() as u32).clamp(1, most));
-        Cells { low, cell, columns, rows }
+        // A box that is not as high as its cells still has all that lies in them.
+        let high = high.max(low + cell * DVec2::new(f64::from(columns), f64::from(rows)));
+        Cells { low, high, cell, columns, rows }
     }
 
     /// The number of the cell of `p`; `None` outside of the map.
     pub(super) fn of(&self, p: DVec2) -> Option<u32> {
+        if !(p.cmpge(self.low).all() && p.cmple(self.high).all()) {
+            return None;
+        }
         let at = (p - self.low) / self.cell;
         // What lies on the upper border belongs to the last cells.
-        let index = |c: f64, most: u32| {
-            let inside = (0.0..=f64::from(most)).contains(&c);
-            inside.then(|| (c as u32).min(most - 1))
-        };
-        Some(index(at.x, self.columns)? + self.columns * index(at.y, self.rows)?)
+        let [column, row] = [(at.x, self.columns), (at.y, self.rows)].map(|(c, most)| (c as u32).min(most - 1));
+        Some(column + self.columns * row)
     }
 }
 
@@ -115,6 +118,9 @@ mod tests {
         assert_eq!(cells.of(DVec2::new(3.0, 3.0)), Some(15));
         assert_eq!(cells.of(DVec2::new(-0.4, 2.6)), Some(9));
         assert_eq!(cells.of(DVec2::new(3.1, 3.0)), None);
+        // 1 divided by a 49th is more than 49.
+        let cells = Cells::new((DVec2::ZERO, DVec2::ONE), 49);
+        assert_eq!(cells.of(DVec2::ONE), Some(49 * 49 - 1));
         assert_eq!(Cells::new((DVec2::ZERO, DVec2::ZERO), 8).of(DVec2::ZERO), Some(0));
         assert_eq!([0.0, 1.0, 1.5, 0.3, 5.0].map(power_of_two), [1.0, 1.0, 1.0, 0.25, 4.0]);
     }

@@ -38,7 +38,8 @@ pub(super) fn meet(
             here
         }
         AtWalls::Reject => {
-            // The heading goes on turning, so that the free end gets away in time.
+            // The heading turns, whatever it does otherwise, so that the free end gets away in time.
+            stride.draw_again(random);
             stride.take();
             here
         }

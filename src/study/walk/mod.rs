@@ -11,7 +11,6 @@ mod stride;
 mod uniform;
 mod waypoints;
 
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 pub(in crate::study) use self::room::point;
@@ -26,9 +25,6 @@ use super::random::{Purpose, Random};
 use super::{AtWalls, PlanError, WalkPlan};
 use crate::scene::Model;
 use crate::trace::{SettledTrace, Trace, settle_clear, settle_owned};
-
-/// The most steps of a trace: its points are numbered in 31 bits.
-const MOST_STEPS: u32 = (1 << 31) - 2;
 
 /// Random traces in a model's scene. Trace n of a seed is the same on every machine, whatever else is drawn.
 ///
@@ -74,27 +70,18 @@ impl Walks {
     /// scene without room, coordinates that cannot be triangulated where that is needed; and given traces, which are not
     /// drawn.
     pub fn new(model: Arc<Model>, plan: &WalkPlan, seed: u64) -> Result<Walks, PlanError> {
-        let (step, steps, start) = match *plan {
-            WalkPlan::Uniform { step, steps, start, .. }
-            | WalkPlan::Gaussian { step, steps, start, .. }
-            | WalkPlan::Persistent { step, steps, start, .. }
-            | WalkPlan::Waypoints { step, steps, start } => (step, steps, start),
+        plan.check()?;
+        let (steps, start) = match *plan {
+            WalkPlan::Uniform { steps, start, .. }
+            | WalkPlan::Gaussian { steps, start, .. }
+            | WalkPlan::Persistent { steps, start, .. }
+            | WalkPlan::Waypoints { steps, start, .. } => (steps, start),
             WalkPlan::Given { .. } => {
                 return Err(PlanError::new(
                     "walk.kind: given traces are read, not drawn; give another kind to draw some",
                 ));
             }
         };
-        if !(step.is_finite() && step > 0.0) {
-            return Err(PlanError::new(format!(
-                "walk.step: {step} is no length of a step; give a number above 0, in the scene's unit"
-            )));
-        }
-        if !(1..=MOST_STEPS).contains(&steps) {
-            return Err(PlanError::new(format!(
-                "walk.steps: a trace cannot have {steps} steps; give a whole number from 1 to {MOST_STEPS}"
-            )));
-        }
         let room = Room::new(model);
         if !(room.high - room.low).cmpgt(glam::DVec2::ZERO).all() {
             return Err(PlanError::new(
@@ -103,17 +90,11 @@ impl Walks {
             ));
         }
         let kind = match *plan {
-            WalkPlan::Uniform { at_walls, .. } => Kind::Uniform { step, at_walls },
-            WalkPlan::Gaussian { at_walls, .. } => Kind::Gaussian { step, at_walls },
-            WalkPlan::Persistent { turn, at_walls, .. } => {
-                if !(0.0..=PI).contains(&turn) {
-                    return Err(PlanError::new(format!(
-                        "walk.turn: a heading cannot turn by {turn}; give radians, from 0 to pi ({PI})"
-                    )));
-                }
-                Kind::Persistent { step, turn, at_walls }
-            }
-            _ => Kind::Waypoints(Box::new(Waypoints::new(&room.model, step)?)),
+            WalkPlan::Uniform { step, at_walls, .. } => Kind::Uniform { step, at_walls },
+            WalkPlan::Gaussian { step, at_walls, .. } => Kind::Gaussian { step, at_walls },
+            WalkPlan::Persistent { step, turn, at_walls, .. } => Kind::Persistent { step, turn, at_walls },
+            WalkPlan::Waypoints { step, .. } => Kind::Waypoints(Box::new(Waypoints::new(&room.model, step)?)),
+            WalkPlan::Given { .. } => unreachable!("given traces were refused above"),
         };
         let starts = Starts::new(&room.model, start)?;
         Ok(Walks { room, kind, starts, steps, seed })

@@ -12,7 +12,8 @@ use crate::study::random::Random;
 /// before a wall for good.
 const LEAST: f64 = 0.1;
 
-/// How many turns are drawn at once, so that several are made in one instruction.
+/// How many turns are drawn at once, so that several are made in one instruction. What a step that meets a wall draws depends
+/// on it, and so do all traces.
 const AHEAD: usize = 16;
 
 /// By what the turn widens with each step drawn in vain.

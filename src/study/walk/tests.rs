@@ -223,3 +223,29 @@ fn errors_say_what_would_be_right() {
     let drive = WalkPlan::Waypoints { step: 0.1, steps: 9, start: Start::Anchor };
     assert!(error(wide, drive).contains("cannot be triangulated"));
 }
+
+/// What other versions drew, by which stored studies go on: where this fails, the number in the identity of studies must rise.
+#[test]
+fn traces_are_those_of_other_versions() {
+    let model = Arc::new(Model::new(BuiltIn::Rooms.scene(1), None).unwrap());
+    let (step, steps, start) = (0.25, 300, Start::Anchor);
+    let plans = [
+        (WalkPlan::Uniform { step, steps, start, at_walls: AtWalls::Redraw }, "535b71366e5512d0"),
+        (WalkPlan::Gaussian { step, steps, start, at_walls: AtWalls::Reflect }, "fe6d55280f7cd262"),
+        (
+            WalkPlan::Persistent { step, steps, turn: 0.4, start: Start::Visible, at_walls: AtWalls::Reject },
+            "190a31891113e557",
+        ),
+        (WalkPlan::Waypoints { step, steps, start }, "70d78d68716207ef"),
+    ];
+    for (plan, known) in plans {
+        let walks = Walks::new(model.clone(), &plan, 5).unwrap();
+        let mut hasher = blake3::Hasher::new();
+        for point in (0..20).flat_map(|number| walks.trace(number).points().to_vec()) {
+            for c in point.to_array() {
+                hasher.update(&c.to_bits().to_le_bytes());
+            }
+        }
+        assert_eq!(&hasher.finalize().to_hex()[..16], known, "{plan:?}");
+    }
+}
