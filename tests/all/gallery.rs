@@ -196,7 +196,7 @@ fn what_captions_say_besides_is_so() {
     for contact in steps(&winding, &model).pop().unwrap().rope.contacts() {
         *times.entry(contact.vertex).or_insert(0) += 1;
     }
-    assert_eq!(times.values().copied().collect::<Vec<_>>().iter().sum::<i32>(), 9);
+    assert_eq!(times.values().sum::<i32>(), 9);
     assert!(times.len() == 4 && times.values().all(|&n| n >= 2));
 }
 
