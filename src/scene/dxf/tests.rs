@@ -143,6 +143,10 @@ fn a_point_on_the_layer_anchor_is_the_anchor() {
     let anchor = |blocks: &[(&str, &str)], entities: &str| parsed(&file("", blocks, entities)).map(|s| s.anchor());
     assert_eq!(anchor(&[], &format!("{LINE} POINT 10=1 20=1 {point}")), Ok(Some(DVec2::new(0.1, 7.0))));
     assert_eq!(anchor(&[("2=A", point)], "INSERT 2=A 10=0 20=1"), Ok(Some(DVec2::new(0.1, 8.0))));
+    // What lies on layer 0 of a block is on the layer of what inserts it.
+    let block = [("2=A", "POINT 10=0 20=1")];
+    assert_eq!(anchor(&block, "INSERT 2=A 8=anchor 10=0 20=1"), Ok(Some(DVec2::new(0.0, 2.0))));
+    assert_eq!(anchor(&block, "INSERT 2=A 8=walls 10=0 20=1"), Ok(None));
     let two = anchor(&[], &format!("{point} {point}")).unwrap_err();
     assert_eq!(two, "line 20: POINT: a second anchor; that of line 12 marks one already, and a scene has one at most");
     let circle = anchor(&[], "CIRCLE 8=anchor 10=0 20=0 40=1").unwrap_err();
