@@ -52,7 +52,7 @@ mod tests {
         for scale in [1e-130, 1e-9, 1.0, 1e140] {
             let mut all: Vec<f64> = (1..=1000).map(|i| scale * f64::from(i * i)).collect();
             let [mut some, mut others] = [Lengths::default(), Lengths::default()];
-            all.iter().for_each(|&x| if (x / scale) as u32 % 3 == 0 { some.add(x) } else { others.add(x) });
+            all.iter().for_each(|&x| if ((x / scale) as u32).is_multiple_of(3) { some.add(x) } else { others.add(x) });
             let (mut one, mut two) = (some.clone(), others.clone());
             one.merge(others);
             two.merge(some);
