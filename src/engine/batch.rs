@@ -170,8 +170,7 @@ impl<'a, P: Player> Half<'a, P> {
             self.order.clear();
             for (number, slot) in (0..).zip(&mut self.slots) {
                 if let Some(Asked { pivot, list, .. }) = &slot.asked
-                    && let Some(place) =
-                        pass.place(*pivot, list.len(), || P::coordinates(shared.lists, *pivot, list))
+                    && let Some(place) = pass.place(*pivot, list.len(), || P::coordinates(shared.lists, *pivot, list))
                 {
                     self.order.push(u64::from(place) << 32 | number);
                 }
@@ -221,12 +220,7 @@ impl<'a, P: Player> Slot<'a, P> {
     }
 
     /// Goes on as far as the answer suffices.
-    fn answered(
-        &mut self,
-        shared: &Shared<'a, '_>,
-        found: &[<P::Kernel as Kernel>::Found],
-        tools: &mut Tools,
-    ) {
+    fn answered(&mut self, shared: &Shared<'a, '_>, found: &[<P::Kernel as Kernel>::Found], tools: &mut Tools) {
         let (Some((_, trace)), Some(answer)) = (self.trace, self.answer.take()) else { return };
         let Some(Asked { list, query, .. }) = self.asked.take() else { return };
         let before = trace.step(self.player.at());

@@ -56,11 +56,8 @@ fn try_vertex(question: &Question, points: &[Vec2], number: u32, p: Vec2, met: &
             return;
         }
         let (a, b) = (points[leg as usize], points[leg as usize + 1]);
-        let dir = if leg == 0 && question.dir != 0.0 {
-            wraps_further(question, number, p, a, b)
-        } else {
-            wraps(p, a, b)
-        };
+        let dir =
+            if leg == 0 && question.dir != 0.0 { wraps_further(question, number, p, a, b) } else { wraps(p, a, b) };
         if dir != 0.0 {
             if leg < met.leg || meets_before(p, met.at, dir) {
                 *met = Answer { leg, place: question.first + number, dir, unused: 0, at: p };
@@ -106,11 +103,8 @@ fn try_pivot(question: &Question, points: &[Vec2], met: &mut Answer) {
             return;
         }
         let (a, b) = (points[leg as usize], points[leg as usize + 1]);
-        let unwraps = if leg == 0 && question.dir != 0.0 {
-            unwraps_further(question, a, b)
-        } else {
-            unwraps(question, a, b)
-        };
+        let unwraps =
+            if leg == 0 && question.dir != 0.0 { unwraps_further(question, a, b) } else { unwraps(question, a, b) };
         if unwraps {
             // On the same leg, the wrap is first where both lie on one line.
             if leg < met.leg || cross(question.way, met.at) * question.back > 0.0 {

@@ -116,7 +116,10 @@ mod tests {
         let question = members!(Question: right, left, ahead, origin, start, way, reach, dir, back, wrapped, first, count, points, legs, barred);
         let (size, members) = layout(&module, "Question");
         assert_eq!((size, &members[..question.len()]), (size_of::<Question>() as u32, &question[..]));
-        assert_eq!(layout(&module, "Answer"), (size_of::<Answer>() as u32, members!(Answer: leg, place, dir, unused, at)));
+        assert_eq!(
+            layout(&module, "Answer"),
+            (size_of::<Answer>() as u32, members!(Answer: leg, place, dir, unused, at))
+        );
         for wgsl in [SWEEP_WGSL, DECIDE_WGSL] {
             let module = shader(wgsl);
             let (size, span) = layout(&module, "Span");

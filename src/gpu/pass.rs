@@ -104,10 +104,8 @@ impl<K: Kernel> GpuPass<K> {
         if K::POINTS > 0 {
             entries.push(binding(3, wgpu::BufferBindingType::Storage { read_only: true }, false));
         }
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("round"),
-            entries: &entries,
-        });
+        let layout = device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("round"), entries: &entries });
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(K::NAME),
             layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

@@ -4,6 +4,7 @@ mod batch;
 mod built_in;
 mod cli;
 mod conservative;
+mod fast;
 mod golden;
 mod pictures;
 mod random;

@@ -41,11 +41,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     folder.save(&state).map_err(|e| Failure::internal(anyhow!(e)))?;
     if study.plan().outputs.traces {
         let parts: Vec<PathBuf> = args.folders.iter().map(|folder| folder.join(TRACES)).collect();
-        merge_results(&parts, &folder.path().join(TRACES), &provenance(&study, "merged", "several runs"))?;
+        let engine = ("merged", study.plan().run.precision.name());
+        merge_results(&parts, &folder.path().join(TRACES), &provenance(&study, engine, "several runs"))?;
     }
     let run = json!({
         "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"), "merged": args.folders,
-        "seconds_of_all_runs": state.seconds(),
+        "precision": study.plan().run.precision.name(), "seconds_of_all_runs": state.seconds(),
     });
     conclude(&folder, &study, &state, &run, args.json)
 }

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::anyhow;
-use tautline::engine::{Engine, Job, Reference};
+use tautline::engine::{Engine, FastGpu, Job, Precision, Reference};
+use tautline::gpu::{AdapterChoice, Device};
 use tautline::output::write_events;
 
 use super::folder::Folder;
@@ -34,7 +35,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
-    let record = Reference::new(model).evaluate(&[trace], &Job::new())?.remove(0);
+    let mut engine: Box<dyn Engine> = match plan.run.precision {
+        Precision::Certified => Box::new(Reference::new(model)),
+        // What the study saw, right or wrong.
+        Precision::Fast => Box::new(FastGpu::new(Device::open(&AdapterChoice::Best)?, model)?),
+    };
+    let record = engine.evaluate(&[trace], &Job::new())?.remove(0);
     if let Some(path) = &args.events {
         write_events(path, model.vertices(), std::slice::from_ref(&record))?;
     }

@@ -18,6 +18,7 @@ use crate::cli::engine::EngineArgs;
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::{self, Writing};
 use crate::cli::progress::{Progress, with_progress};
+use crate::cli::summary::precision;
 use crate::cli::{print, print_json};
 
 /// How often the state is saved.
@@ -77,8 +78,10 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let base = if base.as_os_str().is_empty() { PathBuf::from(".") } else { base };
     plan.run.traces = args.traces.unwrap_or(plan.run.traces);
     plan.run.seed = args.seed.unwrap_or(plan.run.seed);
+    plan.run.precision = args.engine.precision().unwrap_or(plan.run.precision);
     // What was replaced is checked again.
     let plan = plan.checked()?;
+    args.engine.check(plan.run.precision)?;
     if args.shard.of > 1 && (plan.until.relative_error.is_some() || plan.until.seconds.is_some()) {
         return Err(Failure::input(anyhow!(
             "--shard: a shard cannot know when the whole study is certain enough; leave out [until]"
@@ -105,6 +108,13 @@ pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     let _writing = Writing::begin();
     interrupt::check()?;
     let (folder, study, state) = Folder::open(&args.folder)?;
+    let begun = study.plan().run.precision;
+    if args.engine.precision().is_some_and(|asked| asked != begun) {
+        return Err(Failure::input(anyhow!(
+            "--precision: the study was begun with precision {}, and goes on with that only",
+            begun.name()
+        )));
+    }
     proceed(&folder, &study, state, &args.engine, args.json)
 }
 
@@ -119,7 +129,7 @@ fn proceed(
     let job = Arc::new(Job::new());
     interrupt::stops(&job);
     let (mut engines, on) = open_engines(engine, study)?;
-    let name = engines[0].name();
+    let name = (engines[0].name(), precision(&*engines[0]));
     let left = state.shard().count(study.plan().blocks()).saturating_sub(state.done());
     let traces = left * u64::from(study.plan().run.block);
     let steps = study.plan().walk.steps().map_or(0, |steps| traces * u64::from(steps));
@@ -170,7 +180,7 @@ fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn 
     let mut on = String::new();
     let mut engines = Vec::new();
     for model in study.models() {
-        let (engine, place) = args.open(model)?;
+        let (engine, place) = args.open_for(study.plan().run.precision, model)?;
         engines.push(engine);
         on = place;
     }
@@ -178,7 +188,7 @@ fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn 
 }
 
 /// What each file of rows says of where it comes from.
-pub(super) fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static str, String)> {
+pub(super) fn provenance(study: &Study, (engine, precision): (&str, &str), on: &str) -> Vec<(&'static str, String)> {
     let here = Environment::here(None);
     vec![
         ("tautline.version", here.version.to_owned()),
@@ -186,16 +196,24 @@ pub(super) fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static
         ("tautline.study", study.identity().to_owned()),
         ("tautline.seed", study.plan().run.seed.to_string()),
         ("tautline.engine", engine.to_owned()),
+        ("tautline.precision", precision.to_owned()),
         ("tautline.on", on.to_owned()),
     ]
 }
 
 /// What the run cost and where it ran.
-fn cost(state: &State, engine: &str, on: &str, took: Duration, spent: &Spent, steps: u64) -> serde_json::Value {
+fn cost(
+    state: &State,
+    (engine, precision): (&str, &str),
+    on: &str,
+    took: Duration,
+    spent: &Spent,
+    steps: u64,
+) -> serde_json::Value {
     let here = Environment::here(None);
     let seconds = took.as_secs_f64();
     json!({
-        "version": here.version, "commit": here.commit, "engine": engine, "on": on, "processor": here.processor, "os": here.os,
+        "version": here.version, "commit": here.commit, "engine": engine, "precision": precision, "on": on, "processor": here.processor, "os": here.os,
         "threads": here.threads, "shard": format!("{}/{}", state.shard().number, state.shard().of),
         "steps": steps, "seconds": seconds, "steps_per_second": steps as f64 / seconds,
         "seconds_of_all_runs": state.seconds(),
@@ -260,15 +278,16 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     let clock = Instant::now();
     let traces: Vec<_> = (0..few).map(|number| study.trace(number)).collect::<Result<_, _>>()?;
     let own: Vec<_> = traces.into_iter().step_by(study.models().len()).collect();
-    let (mut engine, on) = args.engine.open(model)?;
+    let (mut engine, on) = args.engine.open_for(plan.run.precision, model)?;
     let evaluated = engine.evaluate(&own, &Job::new())?.len();
     let each = clock.elapsed().as_secs_f64() / few.max(1) as f64;
     let mut text = format!("the study is sound: {} traces in {} blocks", plan.run.traces, plan.blocks());
     text += &format!(
-        ", {} walls, {} anchors, engine {} on {on}\n",
+        ", {} walls, {} anchors, engine {} ({}) on {on}\n",
         model.scene().walls().len(),
         study.models().len(),
-        engine.name()
+        engine.name(),
+        precision(&*engine)
     );
     if evaluated > 0 {
         let all = Duration::from_secs_f64(each * plan.run.traces as f64 / f64::from(args.shard.of));
