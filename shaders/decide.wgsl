@@ -1,11 +1,11 @@
 // Deciding in f32: which event does the rope's last leg meet first?
 //
-// One lane takes one question: a window of legs about one pivot. It tries the vertices of the pivot's list, which lie in
-// pages as for `sweep.wgsl`; those in the wedge that the legs span it tries leg by leg, by the rules of the exact update
-// (`src/rope/update.rs`) with rounded cross products in the place of exact signs. Nobody confirms its answer.
+// One lane takes one question: a window of legs about one pivot. It looks through the vertices of the pivot's list, which
+// lie in pages as for `sweep.wgsl`, for those in the wedge that the legs span. These it tries leg by leg, by the rules of the
+// exact update (`src/rope/update.rs`) with rounded cross products in the place of exact signs. Nobody confirms its answer.
 //
-// The twin on the CPU is `src/fast/decide.rs`, function by function. All is compared as cross products, so nothing is
-// divided; coordinates are bounded, so nothing is infinite.
+// The twin on the CPU is `src/fast/decide.rs`. All is compared as cross products, so nothing is divided; coordinates are
+// bounded, so nothing is infinite.
 
 // How many vertices a page holds, two to a vec4.
 const PAGE: u32 = 8190u;
@@ -73,6 +73,13 @@ struct Span {
 
 override WORKGROUP: u32 = 64u;
 
+// How many vertices a lane keeps before it tries them. Lanes that try what they keep at the same time wait less for each
+// other, and each point is read once for all of them.
+const KEPT: u32 = 8u;
+
+var<private> kept: array<vec2<f32>, KEPT>;
+var<private> numbers: array<u32, KEPT>;
+
 fn cross_of(u: vec2<f32>, v: vec2<f32>) -> f32 {
     return u.x * v.y - u.y * v.x;
 }
@@ -113,28 +120,6 @@ fn meets_before(p: vec2<f32>, q: vec2<f32>, dir: f32) -> bool {
     return order > 0.0 || (order == 0.0 && dot_of(p, q - p) > 0.0);
 }
 
-// The first event, if that of the vertex `number` at `p` comes before `met`: else that.
-fn try_vertex(question: Question, number: u32, p: vec2<f32>, met: Answer) -> Answer {
-    var a = points[question.points];
-    for (var leg = 0u; leg < question.legs && leg <= met.leg; leg++) {
-        let b = points[question.points + leg + 1u];
-        var dir = 0.0;
-        if leg == 0u && question.dir != 0.0 {
-            dir = wraps_further(question, number, p, a, b);
-        } else {
-            dir = wraps(p, a, b);
-        }
-        if dir != 0.0 {
-            if leg < met.leg || meets_before(p, met.at, dir) {
-                return Answer(leg, question.first + number, dir, 0u, p);
-            }
-            return met;
-        }
-        a = b;
-    }
-    return met;
-}
-
 fn unwraps(question: Question, a: vec2<f32>, b: vec2<f32>) -> bool {
     let is_past = is_left(question.way, b) == (question.back > 0.0);
     let was_past = is_left(question.way, a) == (question.back > 0.0);
@@ -149,26 +134,46 @@ fn unwraps_further(question: Question, a: vec2<f32>, b: vec2<f32>) -> bool {
     return question.dir == question.back && is_past && is_ahead;
 }
 
-// The first event, if the unwrap of the pivot comes before `met`: else that.
-fn try_pivot(question: Question, met: Answer) -> Answer {
+// Whether the unwrapping ray lies in the wedge.
+fn is_pivot_in_wedge(question: Question) -> bool {
     let sides = min(dot_of(question.right, question.way), dot_of(question.left, question.way));
-    if question.back == 0.0 || sides < -MARGIN {
+    return question.back != 0.0 && sides >= -MARGIN;
+}
+
+// The first event of the first `count` of the vertices kept and, if asked for, of the pivot, if it comes before `met`: else
+// that.
+fn try_legs(question: Question, count: u32, with_pivot: bool, met_before: Answer) -> Answer {
+    var met = met_before;
+    if count == 0u && !with_pivot {
         return met;
     }
     var a = points[question.points];
     for (var leg = 0u; leg < question.legs && leg <= met.leg; leg++) {
         let b = points[question.points + leg + 1u];
-        var turns_back = false;
-        if leg == 0u && question.dir != 0.0 {
-            turns_back = unwraps_further(question, a, b);
-        } else {
-            turns_back = unwraps(question, a, b);
+        let has_turned = leg == 0u && question.dir != 0.0;
+        for (var i = 0u; i < count; i++) {
+            let p = kept[i];
+            var dir = 0.0;
+            if has_turned {
+                dir = wraps_further(question, numbers[i], p, a, b);
+            } else {
+                dir = wraps(p, a, b);
+            }
+            if dir != 0.0 && (leg < met.leg || meets_before(p, met.at, dir)) {
+                met = Answer(leg, question.first + numbers[i], dir, 0u, p);
+            }
         }
-        if turns_back {
-            if leg < met.leg || cross_of(question.way, met.at) * question.back > 0.0 {
+        if with_pivot {
+            var turns_back = false;
+            if has_turned {
+                turns_back = unwraps_further(question, a, b);
+            } else {
+                turns_back = unwraps(question, a, b);
+            }
+            // On the same leg, the wrap is first where both lie on one line.
+            if turns_back && (leg < met.leg || cross_of(question.way, met.at) * question.back > 0.0) {
                 return Answer(leg, UNWRAP, question.back, 0u, vec2<f32>(0.0, 0.0));
             }
-            return met;
         }
         a = b;
     }
@@ -189,21 +194,27 @@ fn decide(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let last = question.first + question.count;
     let end = min(last, page.first + PAGE);
+    var count = 0u;
     for (var place = max(question.first, page.first); place < end; place += 2u) {
         let pair = page.pairs[(place - page.first) / 2u];
         let p = pair.xy - question.origin;
         if in_wedge(question, p) {
-            met = try_vertex(question, place - question.first, p, met);
+            kept[count] = p;
+            numbers[count] = place - question.first;
+            count++;
         }
         let q = pair.zw - question.origin;
         // An odd number of vertices ends with half a pair.
         if place + 1u < end && in_wedge(question, q) {
-            met = try_vertex(question, place + 1u - question.first, q, met);
+            kept[count] = q;
+            numbers[count] = place + 1u - question.first;
+            count++;
+        }
+        if count > KEPT - 2u {
+            met = try_legs(question, count, false, met);
+            count = 0u;
         }
     }
-    // The last page of its list.
-    if last <= page.first + PAGE {
-        met = try_pivot(question, met);
-    }
-    answers[lane] = met;
+    // The pivot goes with the last page of its list.
+    answers[lane] = try_legs(question, count, last <= page.first + PAGE && is_pivot_in_wedge(question), met);
 }

@@ -20,7 +20,7 @@ impl<'m> Gpu<'m> {
     ///
     /// # Errors
     ///
-    /// What the device complains of.
+    /// What the device complains of, or what of its f32 exact ropes cannot rely on.
     pub fn new(device: Device, model: &'m Model) -> Result<Self, GpuError> {
         let tuning = device.tuning();
         Self::with(device, Lists::new(model), LISTS_BUDGET, tuning, SWEEP_WGSL)
@@ -31,8 +31,9 @@ impl<'m> Gpu<'m> {
     ///
     /// # Errors
     ///
-    /// What the device complains of, be it the shader or the memory.
+    /// As [`new`](Self::new), be it the shader or the memory.
     pub fn with(device: Device, lists: Lists<'m>, budget: usize, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
+        device.certify()?;
         let n = lists.model().vertices().len();
         let pass = GpuPass::new(device, lists.keys(), n, budget, tuning, wgsl)?;
         Ok(Gpu { lists, pass, window: WINDOW })

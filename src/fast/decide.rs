@@ -1,4 +1,4 @@
-//! The scalar twin of `shaders/decide.wgsl`, function by function.
+//! The scalar twin of `shaders/decide.wgsl`: the same rules, one vertex after the other.
 
 use glam::Vec2;
 

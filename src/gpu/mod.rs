@@ -1,12 +1,14 @@
 //! The GPU: adapters, and the kernels in `shaders/`.
 
 mod adapter;
+mod arithmetic;
 mod kernel;
 mod pages;
 mod pass;
 mod tuning;
 
-pub use adapter::{AdapterChoice, AdapterKind, AdapterSummary, Device, SOFTWARE_HINT, adapters};
+pub use adapter::{AdapterChoice, AdapterKind, AdapterSummary, Device, SOFTWARE_HINT, adapters, open_all};
+pub use arithmetic::{Arithmetic, PROBE_WGSL};
 pub use kernel::{DECIDE_WGSL, Deciding, Kernel, SWEEP_WGSL, Sweeping};
 pub use pass::{GpuPass, HALVES};
 pub use tuning::Tuning;

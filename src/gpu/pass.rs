@@ -17,7 +17,7 @@ use super::{Device, GpuError, Tuning};
 const TESTS_A_ROUND: usize = 1 << 32;
 
 /// How long a round may take before the device is given up.
-const PATIENCE: Duration = Duration::from_secs(120);
+pub(super) const PATIENCE: Duration = Duration::from_secs(120);
 
 /// How far apart the spans lie in their buffer: every device can bind a uniform buffer at multiples of 256 bytes.
 const SPAN_BYTES: u64 = 256;
@@ -295,7 +295,7 @@ fn bind_spans(
     (spans, bindings)
 }
 
-fn buffer(device: &wgpu::Device, label: &str, size: usize, usage: BufferUsages) -> wgpu::Buffer {
+pub(super) fn buffer(device: &wgpu::Device, label: &str, size: usize, usage: BufferUsages) -> wgpu::Buffer {
     let size = size as u64;
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
 }

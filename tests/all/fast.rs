@@ -274,7 +274,7 @@ fn the_shader_and_its_twin_answer_alike() {
 }
 
 /// Each changes one operator or number of the shader.
-const CHANGES: [(&str, &str); 22] = [
+const CHANGES: [(&str, &str); 24] = [
     ("u.x * v.y - u.y * v.x", "u.x * v.y + u.y * v.x"),
     ("u.x * v.x + u.y * v.y", "u.x * v.x - u.y * v.y"),
     ("min(sides, question.reach", "max(sides, question.reach"),
@@ -288,15 +288,17 @@ const CHANGES: [(&str, &str); 22] = [
     ("number != question.barred", "number == question.barred"),
     ("order > 0.0 ||", "order < 0.0 ||"),
     ("dot_of(p, q - p) > 0.0", "dot_of(p, q - p) < 0.0"),
-    ("question.first + number, dir", "number, dir + 0.5"),
+    ("question.first + numbers[i], dir", "numbers[i], dir + 0.5"),
     ("dot_of(question.way, b) > 0.0, was_past", "dot_of(question.way, b) < 0.0, was_past"),
     ("let crosses = cross_of(a, b) * question.back >= 0.0", "let crosses = cross_of(a, b) * question.back > 0.0"),
     ("cross_of(question.start, question.way) * question.back > 0.0", "cross_of(question.start, question.way) > 0.0"),
     ("question.dir == question.back", "question.dir != question.back"),
-    ("cross_of(question.way, met.at) * question.back > 0.0", "cross_of(question.way, met.at) * question.back >= 0.0"),
-    ("question.back == 0.0 ||", "question.back == 1.0 ||"),
+    ("met.at) * question.back > 0.0", "met.at) * question.back >= 0.0"),
+    ("question.back != 0.0 &&", "question.back == 0.0 &&"),
     ("place + 1u < end", "place + 2u < end"),
     ("place += 2u", "place += 4u"),
+    ("count > KEPT - 2u", "count > KEPT"),
+    ("        a = b;", "        a = b + vec2<f32>(1.0, 0.0);"),
 ];
 
 #[test]
@@ -337,6 +339,10 @@ fn lists_of_several_pages_are_decided_over_all_of_them() {
     }
 }
 
+/// Where the shader writes its answer down.
+const LAST: &str =
+    "answers[lane] = try_legs(question, count, last <= page.first + PAGE && is_pivot_in_wedge(question), met);";
+
 #[test]
 fn a_fast_engine_stops_and_takes_nothing_for_an_answer() {
     let model = Model::new(floor_plan(), None).unwrap();
@@ -346,14 +352,14 @@ fn a_fast_engine_stops_and_takes_nothing_for_an_answer() {
     job.stop();
     assert!(fast(&device, &model).evaluate(&traces, &job).is_err());
     assert_eq!(run(&mut fast(&device, &model), &[]), []);
+    assert_eq!(DECIDE_WGSL.matches(LAST).count(), 1);
     // A device that unwraps what is not there is found out, and does not hang.
-    let broken = DECIDE_WGSL.replace("answers[lane] = met;", "answers[lane] = Answer(0u, UNWRAP, 1.0, 0u, met.at);");
+    let broken = DECIDE_WGSL.replace(LAST, "answers[lane] = Answer(0u, UNWRAP, 1.0, 0u, met.at);");
     let tuning = Tuning { queries: 8, workgroup: 64 };
     let error = FastGpu::with(device.clone(), &model, tuning, &broken).unwrap().evaluate(&traces, &Job::new());
     assert!(error.unwrap_err().to_string().contains("it named a vertex that it was not given"));
     // Nor does one that names the same vertex again and again.
-    let broken =
-        DECIDE_WGSL.replace("answers[lane] = met;", "answers[lane] = Answer(0u, question.first, 1.0, 0u, met.at);");
+    let broken = DECIDE_WGSL.replace(LAST, "answers[lane] = Answer(0u, question.first, 1.0, 0u, met.at);");
     let records =
         FastGpu::with(device.clone(), &model, tuning, &broken).unwrap().evaluate(&traces, &Job::new()).unwrap();
     is_sound(&model, &traces[0], &records[0]);

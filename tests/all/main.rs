@@ -1,5 +1,6 @@
 //! All integration tests, in one binary.
 
+mod arithmetic;
 mod batch;
 mod built_in;
 mod cli;
