@@ -7,7 +7,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use tautline::candidates::{Found, LISTS_BUDGET, Lists, Query, Simd, Slopes, Window};
 use tautline::example::{BuiltIn, Walker, settled_walks};
-use tautline::gpu::{AdapterChoice, Device, GpuPass};
+use tautline::gpu::{AdapterChoice, Device, GpuPass, SWEEP_WGSL, Sweeping};
 use tautline::scene::Model;
 
 fn main() {
@@ -53,14 +53,15 @@ fn gpu_round(bencher: Bencher<'_, '_>) {
     let (list, mut queries) = (lists.all(), queries(&lists));
     let device = Device::open(&AdapterChoice::Best).expect("an adapter");
     let (n, tuning) = (MODEL.vertices().len(), device.tuning());
-    let mut pass = GpuPass::new(device, lists.keys(), n, LISTS_BUDGET, tuning).expect("a pass");
+    let mut pass = GpuPass::<Sweeping>::new(device, lists.keys(), n, LISTS_BUDGET, tuning, SWEEP_WGSL).expect("a pass");
     queries.truncate(pass.capacity());
     let mut found = vec![Found::default(); queries.len()];
     bencher.counter(ItemsCount::new(queries.len())).bench_local(|| {
         pass.start_round();
-        let first = pass.place(lists.key(0, list), list).expect("the first list of a round finds room");
+        let first = pass.place(lists.key(0, list), list.len(), || list.coordinates().collect());
+        let first = first.expect("the first list of a round finds room");
         queries.iter_mut().for_each(|query| (query.first, query.count) = (first, n as u32));
-        pass.send(0, &queries);
+        pass.send(0, &queries, &[]);
         pass.collect(0, &mut found).expect("the round is done");
     });
 }

@@ -32,6 +32,7 @@
 pub mod candidates;
 pub mod engine;
 pub mod example;
+pub mod fast;
 pub mod geometry;
 pub mod gpu;
 pub mod output;

@@ -43,4 +43,10 @@ impl Frame {
     pub fn scaled(&self, length: f64) -> f64 {
         length * self.scale
     }
+
+    /// The length in the scene's unit of one in the frame's.
+    #[inline]
+    pub fn unscaled(&self, length: f64) -> f64 {
+        length / self.scale
+    }
 }

@@ -109,6 +109,11 @@ impl List {
         (place < self.len).then(|| self.places[place / VERTICES].numbers[place % VERTICES])
     }
 
+    /// The place of the vertex with this number, if it is there. O(vertices).
+    pub fn place_of(&self, number: u32) -> Option<u32> {
+        self.numbers().zip(0..).find(|(v, _)| *v == number).map(|(_, place)| place)
+    }
+
     /// Their coordinates in the frame, one after the other.
     pub fn coordinates(&self) -> impl Iterator<Item = [f32; 2]> {
         let all = self.places.iter().flat_map(|p| p.x.iter().zip(&p.y));

@@ -23,6 +23,13 @@ use super::Frame;
 /// which is 1.6e-6 in all. Fusing and reassociating change which sums round, not how many.
 const MARGIN: f64 = 1.0 / (1 << 18) as f64;
 
+/// What of the margin is for the device: by how much the value of a half-plane may be off because of rounded products and
+/// sums, 2 x 2^-23 + 2 x 2^-21 (those that are flushed add nothing to speak of).
+pub const ARITHMETIC: f64 = 2.0 / (1 << 23) as f64 + 2.0 / (1 << 21) as f64;
+
+/// No half-plane's normal is longer.
+pub const LONGEST_NORMAL: f64 = 1.81;
+
 /// The longest way from the pivot, in the frame's unit, for which a leg that spreads wide gets a triangle: 2^20. The far
 /// side's offset, and even the way in which the triangle turns, are rounded in proportion to the ways.
 const LONGEST: f64 = (1 << 20) as f64;

@@ -1,7 +1,7 @@
 //! `tautline adapters`.
 
-use serde_json::json;
-use tautline::gpu::{AdapterKind, SOFTWARE_HINT, adapters};
+use serde_json::{Value, json};
+use tautline::gpu::{AdapterKind, Arithmetic, GpuError, SOFTWARE_HINT, open_all};
 
 use super::failure::Failure;
 use super::{print, print_json};
@@ -14,22 +14,30 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let all = adapters();
+    let opened: Vec<_> = open_all()
+        .into_iter()
+        .map(|(summary, device)| (summary, device.and_then(|device| device.arithmetic().cloned())))
+        .collect();
     if args.json {
-        let list: Vec<_> = all
+        let list: Vec<_> = opened
             .iter()
-            .map(|a| json!({"name": a.name, "type": a.kind.to_string(), "backend": a.backend, "driver": a.driver}))
+            .map(|(a, f32)| {
+                let (name, kind, backend, driver) = (&a.name, a.kind.to_string(), &a.backend, &a.driver);
+                json!({"name": name, "type": kind, "backend": backend, "driver": driver, "f32": described(f32)})
+            })
             .collect();
         return print_json(&json!({ "adapters": list }));
     }
+    let all: Vec<_> = opened.iter().map(|(summary, _)| summary).collect();
     let mut text = String::new();
     if all.is_empty() {
         text += "No GPU adapter was found.\n";
     } else {
         let width = all.iter().map(|a| a.name.chars().count()).max().unwrap_or(0).max(7);
         text += &format!("{:width$}  {:10}  {:7}  driver\n", "adapter", "type", "backend");
-        for a in &all {
+        for (a, f32) in &opened {
             text += &format!("{:width$}  {:10}  {:7}  {}\n", a.name, a.kind, a.backend, a.driver);
+            text += &format!("    f32: {}\n", words(f32));
         }
     }
     if !all.iter().any(|a| a.kind.is_real()) {
@@ -39,4 +47,35 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         text += &format!("\n{SOFTWARE_HINT}\n");
     }
     print(&text)
+}
+
+/// What a device makes of f32, or why that could not be found out.
+fn described(found: &Result<Arithmetic, GpuError>) -> Value {
+    match found {
+        Ok(f32) => json!({
+            "certified": f32.fault.is_none(), "fault": f32.fault, "largest_error": f32.largest_error,
+            "rounds_to_nearest": f32.rounds_to_nearest, "fuses": f32.fuses, "flushes": f32.flushes,
+            "reassociates": f32.reassociates,
+        }),
+        Err(error) => json!({"certified": false, "fault": error.to_string()}),
+    }
+}
+
+/// The same for people.
+fn words(found: &Result<Arithmetic, GpuError>) -> String {
+    let f32 = match found {
+        Ok(f32) => f32,
+        Err(error) => return error.to_string(),
+    };
+    if let Some(fault) = &f32.fault {
+        return format!("fit for precision fast only: {fault}");
+    }
+    let rounds = if f32.rounds_to_nearest { "rounds to nearest" } else { "rounds either way" };
+    let fuses = if f32.fuses { "fuses" } else { "fuses nothing" };
+    let flushes = if f32.flushes { "flushes subnormals" } else { "keeps subnormals" };
+    let order = if f32.reassociates { "reorders sums" } else { "keeps the order of sums" };
+    let error = 100.0 * f32.largest_error;
+    format!(
+        "fit for exact ropes, with errors of at most {error:.0} % of the bound; {rounds}, {fuses}, {flushes}, {order}"
+    )
 }

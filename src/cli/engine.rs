@@ -1,7 +1,7 @@
 //! Choosing what computes the ropes.
 
 use anyhow::anyhow;
-use tautline::engine::{Cpu, Engine, Funnel, Gpu, Note, Reference, WINDOW};
+use tautline::engine::{Cpu, Engine, FastGpu, Funnel, Gpu, Note, Precision, Reference, WINDOW};
 use tautline::gpu::{AdapterChoice, Device, GpuError};
 use tautline::scene::Model;
 
@@ -16,10 +16,13 @@ pub(crate) struct EngineArgs {
     /// Which GPU: part of its name, or `software`; implies `--engine gpu`
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
-    /// The most steps that one query covers; no result depends on it
+    /// Whether exact signs decide, or f32 alone; `fast` implies `--engine gpu` [default: certified]
+    #[arg(long, value_enum, value_name = "PRECISION")]
+    precision: Option<PrecisionName>,
+    /// The most steps that one query covers; no certified result depends on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     window: Option<u32>,
-    /// Try all wall ends in every query, not only those that the pivot sees; no result depends on it
+    /// Try all wall ends in every query, not only those that the pivot sees; no certified result depends on it
     #[arg(long)]
     keep_all: bool,
 }
@@ -40,18 +43,56 @@ enum EngineName {
     Note,
 }
 
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum PrecisionName {
+    /// Every rope is right
+    Certified,
+    /// The GPU decides in f32 and nothing confirms it: ropes can be wrong
+    Fast,
+}
+
 /// An engine, and in words what it runs on.
 type Opened<'m> = (Box<dyn Engine + 'm>, String);
 
 impl EngineArgs {
+    /// The precision asked for, if one was.
+    pub(crate) fn precision(&self) -> Option<Precision> {
+        self.precision.map(|precision| match precision {
+            PrecisionName::Certified => Precision::Certified,
+            PrecisionName::Fast => Precision::Fast,
+        })
+    }
+
     /// Opens the engine asked for; says on stderr what was chosen where there was a choice.
     pub(crate) fn open<'m>(&self, model: &'m Model) -> Result<Opened<'m>, Failure> {
+        self.open_for(self.precision().unwrap_or_default(), model)
+    }
+
+    /// Refuses what does not go together, with that precision.
+    pub(crate) fn check(&self, precision: Precision) -> Result<(), Failure> {
+        let takes_gpu = matches!(self.engine, EngineName::Gpu | EngineName::Auto);
+        if self.adapter.is_some() && !takes_gpu {
+            return Err(Failure::input(anyhow!("--adapter goes with --engine gpu or auto")));
+        }
+        if precision == Precision::Fast && !takes_gpu {
+            return Err(Failure::input(anyhow!(
+                "precision fast is one of the engine gpu: give --engine gpu or auto with it, or take precision certified"
+            )));
+        }
+        Ok(())
+    }
+
+    /// Opens the engine asked for, with a precision that was settled elsewhere.
+    pub(crate) fn open_for<'m>(&self, precision: Precision, model: &'m Model) -> Result<Opened<'m>, Failure> {
+        self.check(precision)?;
         let one_thread = || "one thread".to_owned();
         match (self.engine, &self.adapter) {
-            (EngineName::Gpu, None) => Ok(self.gpu(&AdapterChoice::Best, model)?),
-            (EngineName::Gpu | EngineName::Auto, Some(name)) => Ok(self.gpu(&named(name), model)?),
-            (_, Some(_)) => Err(Failure::input(anyhow!("--adapter goes with --engine gpu or auto"))),
-            (EngineName::Auto, None) => Ok(self.gpu(&AdapterChoice::Real, model).unwrap_or_else(|error| {
+            (_, Some(name)) => Ok(self.gpu(&named(name), precision, model)?),
+            (EngineName::Gpu, None) => Ok(self.gpu(&AdapterChoice::Best, precision, model)?),
+            (EngineName::Auto, None) if precision == Precision::Fast => {
+                Ok(self.gpu(&AdapterChoice::Best, precision, model)?)
+            }
+            (EngineName::Auto, None) => Ok(self.gpu(&AdapterChoice::Real, precision, model).unwrap_or_else(|error| {
                 let why = match error {
                     GpuError::NoAdapter { .. } => "there is no real GPU here".to_owned(),
                     other => other.to_string(),
@@ -66,14 +107,20 @@ impl EngineArgs {
         }
     }
 
-    fn gpu<'m>(&self, choice: &AdapterChoice, model: &'m Model) -> Result<Opened<'m>, GpuError> {
-        let mut engine = Gpu::new(Device::open(choice)?, model)?.window(self.window());
-        if self.keep_all {
-            engine = engine.keep_all();
-        }
-        let on = engine.adapter().to_string();
+    fn gpu<'m>(&self, choice: &AdapterChoice, precision: Precision, model: &'m Model) -> Result<Opened<'m>, GpuError> {
+        let device = Device::open(choice)?;
+        let on = device.summary().to_string();
+        let engine: Box<dyn Engine> = match (precision, self.keep_all) {
+            (Precision::Certified, false) => Box::new(Gpu::new(device, model)?.window(self.window())),
+            (Precision::Certified, true) => Box::new(Gpu::new(device, model)?.window(self.window()).keep_all()),
+            (Precision::Fast, false) => Box::new(FastGpu::new(device, model)?.window(self.window())),
+            (Precision::Fast, true) => Box::new(FastGpu::new(device, model)?.window(self.window()).keep_all()),
+        };
         eprintln!("engine: gpu on {on}");
-        Ok((Box::new(engine), on))
+        if precision == Precision::Fast {
+            eprintln!("note: precision fast: f32 decides alone, so ropes can be wrong");
+        }
+        Ok((engine, on))
     }
 
     fn cpu<'m>(&self, model: &'m Model) -> Opened<'m> {

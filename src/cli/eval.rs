@@ -51,7 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = args.input.source()?;
     let (mut engine, on) = args.engine.open(&model)?;
     let batches = Batches::start(source, model.clone(), engine.batch());
-    let mut summary = Summary::new(&args.input.name(), &model, (engine.name(), on));
+    let mut summary = Summary::new(&args.input.name(), &model, &*engine, on);
     let mut times = evaluate(args, &model, batches, &mut *engine, &mut summary)?;
     times.total = start.elapsed();
     if args.json { print_json(&summary.json(&times)) } else { print(&summary.table(&times, args.out.is_none())) }

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use serde_json::{Value, json};
+use tautline::engine::{Engine, Precision};
 use tautline::rope::{EventKind, Status, TraceRecord};
 use tautline::scene::Model;
 
@@ -17,6 +18,7 @@ pub(crate) struct Summary {
     anchor: [f64; 2],
     on: String,
     engine: &'static str,
+    precision: &'static str,
     traces: u64,
     steps: u64,
     violations: u64,
@@ -39,6 +41,11 @@ pub(crate) struct Times {
     pub written: Duration,
     /// From the start to the end of it all.
     pub total: Duration,
+}
+
+/// How much an engine's ropes can be trusted, as reports name it: `f64` where they are wrong by design.
+pub(super) fn precision(engine: &dyn Engine) -> &'static str {
+    engine.precision().map_or("f64", Precision::name)
 }
 
 fn row(name: &str, spread: &Spread) -> String {
@@ -74,7 +81,7 @@ pub(super) fn grouped(count: u64) -> String {
 
 impl Summary {
     /// No traces so far.
-    pub(crate) fn new(scene: &str, model: &Model, (engine, on): (&'static str, String)) -> Self {
+    pub(crate) fn new(scene: &str, model: &Model, engine: &dyn Engine, on: String) -> Self {
         Summary {
             scene: scene.to_owned(),
             walls: model.scene().walls().len(),
@@ -82,7 +89,8 @@ impl Summary {
             dropped: model.scene().dropped(),
             anchor: model.anchor().to_array(),
             on,
-            engine,
+            engine: engine.name(),
+            precision: precision(engine),
             traces: 0,
             steps: 0,
             violations: 0,
@@ -122,13 +130,14 @@ impl Summary {
         let mut text = format!(
             "scene    {}: {} walls with {} ends, anchor ({x}, {y})\n\
              traces   {}, {} steps\n\
-             engine   {} on {}\n",
+             engine   {} ({}) on {}\n",
             self.scene,
             grouped(self.walls as u64),
             grouped(self.vertices as u64),
             grouped(self.traces),
             grouped(self.steps),
             self.engine,
+            self.precision,
             self.on,
         );
         if self.violations > 0 {
@@ -160,7 +169,7 @@ impl Summary {
     pub(crate) fn json(&self, times: &Times) -> Value {
         json!({
             "scene": {"name": self.scene, "walls": self.walls, "vertices": self.vertices, "dropped": self.dropped, "anchor": self.anchor},
-            "engine": self.engine, "on": self.on, "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
+            "engine": self.engine, "precision": self.precision, "on": self.on, "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
             "traces": self.traces, "steps": self.steps, "violations": self.violations,
             "wraps": self.wraps, "unwraps": self.unwraps,
             "length": self.length.spread().json(), "max_length": self.max_length.spread().json(),

@@ -1,37 +1,81 @@
 //! Many traces at once on a device: each round, every active trace asks one query, the device answers them all, and the
-//! exact update goes on among the candidates. Finished traces leave and waiting ones take their place. Two half-batches
-//! take turns, so that one is on the device while the other is on the CPU.
+//! traces go on by the answers. Finished traces leave and waiting ones take their place. Two half-batches take turns, so that
+//! one is on the device while the other is on the CPU.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use super::course::Course;
 use super::{EngineError, Job, Phase};
-use crate::candidates::{Found, List, Lists, Query, ROOM, Simd, Slopes};
-use crate::gpu::{GpuPass, HALVES};
+use crate::candidates::{List, Lists, Simd, Slopes};
+use crate::gpu::{GpuPass, HALVES, Kernel};
 use crate::rope::TraceRecord;
+use crate::scene::Model;
 use crate::trace::SettledTrace;
 use crate::visibility::Scratch;
 
+/// What takes one trace after the other from query to query.
+pub(super) trait Player: Send {
+    /// What answers it.
+    type Kernel: Kernel;
+
+    /// One that stands nowhere.
+    fn new() -> Self;
+
+    /// Stands at the start of `trace`.
+    fn start(&mut self, model: &Model, trace: &SettledTrace);
+
+    /// The record of a trace that is done.
+    fn finished(&mut self, trace: &SettledTrace) -> Option<TraceRecord>;
+
+    /// The settled point at which the free end stands.
+    fn at(&self) -> usize;
+
+    /// The query for what comes next; the trace is not done. `None` if it has gone on without the device.
+    fn ask(&mut self, shared: &Shared<'_, '_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Self::Kernel>>;
+
+    /// The points of the trace that come with the query asked last.
+    fn points(&self) -> &[[f32; 2]] {
+        &[]
+    }
+
+    /// Goes on as far as the answer suffices.
+    fn answered(
+        &mut self,
+        shared: &Shared<'_, '_>,
+        trace: &SettledTrace,
+        asked: (&List, &<Self::Kernel as Kernel>::Query),
+        found: &<Self::Kernel as Kernel>::Found,
+        tools: &mut Tools,
+    ) -> Result<(), Astray>;
+
+    /// What the device is to hold of the `list` of which the key is `pivot`.
+    fn coordinates(_: &Lists<'_>, _pivot: u32, list: &Arc<List>) -> Vec<[f32; 2]> {
+        list.coordinates().collect()
+    }
+}
+
+/// The device named a vertex that it was not given.
+pub(super) struct Astray;
+
 /// What all slots share.
-struct Shared<'a, 'm> {
-    lists: &'a Lists<'m>,
-    window: usize,
-    simd: Simd,
+pub(super) struct Shared<'a, 'm> {
+    pub lists: &'a Lists<'m>,
+    pub window: usize,
+    pub simd: Simd,
+    pub job: &'a Job,
     traces: &'a [SettledTrace],
     /// How many traces have been begun.
     begun: AtomicUsize,
-    /// Whether the device named a vertex that it was not given.
+    /// Whether an answer was [`Astray`].
     astray: AtomicBool,
     tools: Mutex<Vec<Tools>>,
-    job: &'a Job,
 }
 
 /// Evaluates `traces` in rounds of `pass`, with windows of at most `window` legs.
-pub(super) fn evaluate(
-    pass: &mut GpuPass,
+pub(super) fn evaluate<P: Player>(
+    pass: &mut GpuPass<P::Kernel>,
     lists: &Lists<'_>,
     window: usize,
     traces: &[SettledTrace],
@@ -41,7 +85,7 @@ pub(super) fn evaluate(
     let (simd, tools) = (Simd::detected(), Mutex::default());
     let shared = Shared { lists, window, simd, traces, begun, astray, tools, job };
     let slots = pass.capacity().min(traces.len().div_ceil(HALVES));
-    let mut halves: [Half<'_>; HALVES] = std::array::from_fn(|_| Half::new(slots));
+    let mut halves: [Half<'_, P>; HALVES] = std::array::from_fn(|_| Half::new(slots));
     let mut records: Vec<Option<TraceRecord>> = traces.iter().map(|_| None).collect();
     let done = play(pass, &shared, &mut halves, &mut records);
     // Rounds that are still on their way after an early end: so that the next evaluation finds the device free.
@@ -52,10 +96,10 @@ pub(super) fn evaluate(
     Ok(records.into_iter().map(|r| r.expect("every trace was evaluated")).collect())
 }
 
-fn play<'a>(
-    pass: &mut GpuPass,
+fn play<'a, P: Player>(
+    pass: &mut GpuPass<P::Kernel>,
     shared: &Shared<'a, '_>,
-    halves: &mut [Half<'a>],
+    halves: &mut [Half<'a, P>],
     records: &mut [Option<TraceRecord>],
 ) -> Result<(), EngineError> {
     while halves.iter().any(|half| !half.slots.is_empty()) {
@@ -78,25 +122,27 @@ fn play<'a>(
 }
 
 /// A half-batch and its round.
-struct Half<'a> {
-    slots: Vec<Slot<'a>>,
+struct Half<'a, P: Player> {
+    slots: Vec<Slot<'a, P>>,
     /// The places of the slots' lists and the slots' numbers, in one number, so that sorting puts equal lists together.
     order: Vec<u64>,
-    queries: Vec<Query>,
-    found: Vec<Found>,
+    queries: Vec<<P::Kernel as Kernel>::Query>,
+    points: Vec<[f32; 2]>,
+    found: Vec<<P::Kernel as Kernel>::Found>,
 }
 
-impl<'a> Half<'a> {
+impl<'a, P: Player> Half<'a, P> {
     fn new(slots: usize) -> Self {
         Half {
             slots: (0..slots).map(|_| Slot::new()).collect(),
             order: Vec::with_capacity(slots),
             queries: Vec::with_capacity(slots),
-            found: vec![Found::default(); slots],
+            points: Vec::new(),
+            found: vec![Default::default(); slots],
         }
     }
 
-    fn collect(&mut self, pass: &mut GpuPass, number: usize, job: &Job) -> Result<(), EngineError> {
+    fn collect(&mut self, pass: &mut GpuPass<P::Kernel>, number: usize, job: &Job) -> Result<(), EngineError> {
         let found = &mut self.found[..self.queries.len()];
         Ok(job.time(Phase::Readback, || pass.collect(number, found))?)
     }
@@ -118,87 +164,70 @@ impl<'a> Half<'a> {
     }
 
     /// Sends the slots' queries, sorted by list. Those whose lists find no room wait for the next round.
-    fn send(&mut self, pass: &mut GpuPass, number: usize, shared: &Shared<'a, '_>) {
+    fn send(&mut self, pass: &mut GpuPass<P::Kernel>, number: usize, shared: &Shared<'a, '_>) {
         shared.job.time(Phase::Upload, || {
             pass.start_round();
             self.order.clear();
             for (number, slot) in (0..).zip(&mut self.slots) {
-                if let Some(asked) = &mut slot.asked
-                    && let Some(place) = pass.place(asked.pivot, &asked.list)
+                if let Some(Asked { pivot, list, .. }) = &slot.asked
+                    && let Some(place) = pass.place(*pivot, list.len(), || P::coordinates(shared.lists, *pivot, list))
                 {
                     self.order.push(u64::from(place) << 32 | number);
                 }
             }
             self.order.sort_unstable();
             self.queries.clear();
+            self.points.clear();
             let mut tests = 0;
             for (answer, &ordered) in (0..).zip(&self.order) {
-                let Some(asked) = &mut self.slots[ordered as u32 as usize].asked else { continue };
-                let first = (ordered >> 32) as u32;
-                self.queries.push(Query { first, ..asked.query });
-                asked.answer = Some((first, answer));
-                tests += u64::from(asked.query.count);
+                let Slot { player, asked, answer: own, .. } = &mut self.slots[ordered as u32 as usize];
+                let Some(asked) = asked else { continue };
+                let query = P::Kernel::placed(&asked.query, (ordered >> 32) as u32, self.points.len() as u32);
+                tests += u64::from(P::Kernel::tried(&query).1);
+                self.queries.push(query);
+                self.points.extend_from_slice(player.points());
+                asked.query = query;
+                *own = Some(answer);
             }
-            pass.send(number, &self.queries);
+            pass.send(number, &self.queries, &self.points);
             shared.job.count_tests(tests);
         });
     }
 }
 
 /// A place in the batch and the trace in it.
-struct Slot<'a> {
-    course: Course,
+struct Slot<'a, P: Player> {
+    player: P,
     trace: Option<(usize, &'a SettledTrace)>,
-    asked: Option<Asked>,
+    asked: Option<Asked<P::Kernel>>,
+    /// Which answer is that to what was asked, once it has been sent.
+    answer: Option<usize>,
     /// The records of traces that were finished since they were last fetched, with the traces' numbers.
     records: Vec<(usize, TraceRecord)>,
 }
 
 /// What a slot waits for.
-struct Asked {
-    pivot: u32,
-    list: Arc<List>,
-    query: Query,
-    /// Where its list lies and which answer is its own, once it has been sent.
-    answer: Option<(u32, usize)>,
+pub(super) struct Asked<K: Kernel> {
+    /// The key of the list: the pivot, or another number for a list that serves several.
+    pub pivot: u32,
+    pub list: Arc<List>,
+    pub query: K::Query,
 }
 
-impl<'a> Slot<'a> {
+impl<'a, P: Player> Slot<'a, P> {
     fn new() -> Self {
-        Slot { course: Course::new(), trace: None, asked: None, records: Vec::new() }
+        Slot { player: P::new(), trace: None, asked: None, answer: None, records: Vec::new() }
     }
 
     /// Goes on as far as the answer suffices.
-    fn answered(&mut self, shared: &Shared<'a, '_>, found: &[Found], tools: &mut Tools) {
-        let (Some((_, trace)), Some(asked)) = (self.trace, &self.asked) else { return };
-        let Some((first, answer)) = asked.answer else { return };
-        let (model, simd, slopes) = (shared.lists.model(), shared.simd, &mut tools.slopes);
-        let before = trace.step(self.course.at());
-        let mut candidates = [0; ROOM];
-        match found[answer].places() {
-            Some([]) if self.course.is_quiet() => self.course.pass_by(trace),
-            Some(places) => {
-                let candidates = &mut candidates[..places.len()];
-                for (candidate, place) in candidates.iter_mut().zip(places) {
-                    match asked.list.number(place.wrapping_sub(first) as usize) {
-                        Some(vertex) => *candidate = vertex,
-                        None => return shared.astray.store(true, Ordering::Relaxed),
-                    }
-                }
-                self.course.recall(trace, simd, slopes);
-                self.course.go_on(model, trace, candidates, simd, slopes);
-            }
-            None if self.course.narrow() => {}
-            // Too many for one leg.
-            None => {
-                let mut candidates = Vec::new();
-                asked.list.sweep(simd, &asked.query, asked.query.count as usize, &mut candidates);
-                self.course.recall(trace, simd, slopes);
-                self.course.go_on(model, trace, &candidates, simd, slopes);
-            }
+    fn answered(&mut self, shared: &Shared<'a, '_>, found: &[<P::Kernel as Kernel>::Found], tools: &mut Tools) {
+        let (Some((_, trace)), Some(answer)) = (self.trace, self.answer.take()) else { return };
+        let Some(Asked { list, query, .. }) = self.asked.take() else { return };
+        let before = trace.step(self.player.at());
+        if self.player.answered(shared, trace, (&list, &query), &found[answer], tools).is_err() {
+            shared.astray.store(true, Ordering::Relaxed);
         }
-        shared.job.count(trace.step(self.course.at()) - before);
-        self.asked = None;
+        shared.job.count(trace.step(self.player.at()) - before);
     }
 
     /// Asks what comes next, in the next trace where one is done; nothing if no trace is left.
@@ -207,66 +236,35 @@ impl<'a> Slot<'a> {
         if self.asked.is_some() {
             return;
         }
-        let (lists, model) = (shared.lists, shared.lists.model());
         while shared.job.go_on().is_ok() {
             let Some((number, trace)) = self.trace else {
                 let number = shared.begun.fetch_add(1, Ordering::Relaxed);
                 let Some(trace) = shared.traces.get(number) else { return };
                 self.trace = Some((number, trace));
-                self.course.start(model, trace);
+                self.player.start(shared.lists.model(), trace);
                 continue;
             };
-            if let Some(record) = self.course.finished(trace) {
+            if let Some(record) = self.player.finished(trace) {
                 self.records.push((number, record));
                 self.trace = None;
                 continue;
             }
-            let query = shared.job.time(Phase::Queries, || {
-                self.course.ask(lists.frame(), trace, shared.window, shared.simd, &mut tools.slopes)
-            });
-            if trace.violation().is_none() {
-                let pivot = self.course.pivot(model);
-                match shared.job.time(Phase::Queries, || lists.of(pivot, f64::INFINITY)) {
-                    Some(list) => {
-                        let count = list.within(self.course.squared(trace)) as u32;
-                        let query = Query { count, ..query };
-                        self.asked = Some(Asked { pivot: lists.key(pivot, &list), list, query, answer: None });
-                        return;
-                    }
-                    None => self.look(shared, pivot, &query, tools),
-                }
-                continue;
+            let before = self.player.at();
+            self.asked = self.player.ask(shared, trace, tools);
+            if self.asked.is_some() {
+                return;
             }
-            // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
-            let before = self.course.at();
-            self.course.try_all(model, trace);
-            shared.job.count(trace.step(self.course.at()) - trace.step(before));
-            shared.job.count_tests(((self.course.at() - before) * model.vertices().len()) as u64);
+            shared.job.count(trace.step(self.player.at()) - trace.step(before));
         }
-    }
-
-    /// Goes on through the window that was asked for last, whose pivot is not worth a list: it is answered here and now.
-    fn look(&mut self, shared: &Shared<'a, '_>, pivot: u32, query: &Query, tools: &mut Tools) {
-        let Some((_, trace)) = self.trace else { return };
-        let before = trace.step(self.course.at());
-        let Tools { slopes, scratch, found } = tools;
-        let job = shared.job;
-        let tried = job.time(Phase::Kernel, || shared.lists.look_into(pivot, query, shared.simd, scratch, found));
-        if found.len() <= ROOM || !self.course.narrow() {
-            let model = shared.lists.model();
-            job.time(Phase::Update, || self.course.go_on(model, trace, found, shared.simd, slopes));
-        }
-        shared.job.count_tests(tried as u64);
-        shared.job.count(trace.step(self.course.at()) - before);
     }
 }
 
 /// Memory that one thread works with.
 #[derive(Default)]
-struct Tools {
-    slopes: Slopes,
-    scratch: Scratch,
-    found: Vec<u32>,
+pub(super) struct Tools {
+    pub slopes: Slopes,
+    pub scratch: Scratch,
+    pub found: Vec<u32>,
 }
 
 /// Tools taken from a pool, to which they go back: they are too large to be made for every round.

@@ -1,5 +1,6 @@
 //! The engine of the product: the candidate pass in a compute shader, pushes and pops on the CPU.
 
+use super::course::Course;
 use super::{Engine, EngineError, Job, WINDOW, batch};
 use crate::candidates::{LISTS_BUDGET, Lists};
 use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass, HALVES, SWEEP_WGSL, Tuning};
@@ -19,7 +20,7 @@ impl<'m> Gpu<'m> {
     ///
     /// # Errors
     ///
-    /// What the device complains of.
+    /// What the device complains of, or what of its f32 exact ropes cannot rely on.
     pub fn new(device: Device, model: &'m Model) -> Result<Self, GpuError> {
         let tuning = device.tuning();
         Self::with(device, Lists::new(model), LISTS_BUDGET, tuning, SWEEP_WGSL)
@@ -30,10 +31,11 @@ impl<'m> Gpu<'m> {
     ///
     /// # Errors
     ///
-    /// What the device complains of, be it the shader or the memory.
+    /// As [`new`](Self::new), be it the shader or the memory.
     pub fn with(device: Device, lists: Lists<'m>, budget: usize, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
+        device.certify()?;
         let n = lists.model().vertices().len();
-        let pass = GpuPass::with_shader(device, lists.keys(), n, budget, tuning, wgsl)?;
+        let pass = GpuPass::new(device, lists.keys(), n, budget, tuning, wgsl)?;
         Ok(Gpu { lists, pass, window: WINDOW })
     }
 
@@ -77,7 +79,7 @@ impl Engine for Gpu<'_> {
         if bounds(traces).is_some_and(|bounds| self.lists.cover(bounds)) {
             self.pass.forget();
         }
-        batch::evaluate(&mut self.pass, &self.lists, self.window, traces, job)
+        batch::evaluate::<Course>(&mut self.pass, &self.lists, self.window, traces, job)
     }
 
     fn batch(&self) -> usize {

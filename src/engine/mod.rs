@@ -2,13 +2,17 @@
 //! vertices to try (but for `note` and `funnel`, which are other methods altogether).
 
 mod batch;
+mod certified;
 mod course;
 mod cpu;
+mod fast_gpu;
 mod funnel;
 mod gpu;
+mod hasty;
 mod job;
 mod live;
 mod note;
+mod precision;
 mod reference;
 mod walk;
 
@@ -19,11 +23,13 @@ use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
 
 pub use cpu::Cpu;
+pub use fast_gpu::FastGpu;
 pub use funnel::Funnel;
 pub use gpu::Gpu;
 pub use job::{Job, Phase};
 pub use live::{AdvanceError, LiveEvent, LiveRope};
 pub use note::Note;
+pub use precision::Precision;
 pub use reference::Reference;
 
 /// The most legs that one query covers unless told otherwise: the exact update tries each candidate at each leg, so
@@ -37,6 +43,11 @@ const BATCH: usize = 8192;
 pub trait Engine {
     /// The engine's name, as the command line knows it.
     fn name(&self) -> &'static str;
+
+    /// How much its ropes can be trusted; `None` if they are wrong by design, for comparison.
+    fn precision(&self) -> Option<Precision> {
+        Some(Precision::Certified)
+    }
 
     /// Evaluates all `traces`, settled against the engine's model, and returns their records in the same order.
     ///

@@ -5,7 +5,7 @@
 use glam::DVec2;
 
 use super::walk::Walk;
-use super::{Engine, EngineError, Job};
+use super::{Engine, EngineError, Job, Precision};
 use crate::rope::{EventKind, Side, TraceRecord};
 use crate::scene::Model;
 use crate::trace::SettledTrace;
@@ -33,6 +33,10 @@ type Ray = (DVec2, DVec2);
 impl Engine for Note<'_> {
     fn name(&self) -> &'static str {
         "note"
+    }
+
+    fn precision(&self) -> Option<Precision> {
+        None
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {

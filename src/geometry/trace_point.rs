@@ -91,6 +91,17 @@ pub struct TracePoint {
     pub hair: Option<Hair>,
 }
 
+impl TracePoint {
+    /// Where it stands if its hair, if it has one, has this real length and is turned by about two degrees: for those who
+    /// compute with rounded numbers.
+    pub fn plucked(self, length: f64) -> DVec2 {
+        let Some(hair) = self.hair else { return self.at };
+        let way = (hair.witness - self.at) * hair.sense();
+        let along = way / way.length();
+        self.at + length * (along + along.perp() * hair.turn.sign() / 32.0)
+    }
+}
+
 impl From<DVec2> for TracePoint {
     fn from(at: DVec2) -> Self {
         TracePoint { at, hair: None }

@@ -1,10 +1,11 @@
 //! Finding and opening an adapter.
 
 use std::fmt;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use wgpu::{Backends, DeviceType};
 
+use super::arithmetic::{Arithmetic, PROBE_WGSL};
 use super::{GpuError, Tuning};
 
 /// How to get a software adapter.
@@ -126,6 +127,15 @@ fn enumerate() -> Vec<(AdapterSummary, wgpu::Adapter)> {
     all
 }
 
+/// All adapters that this machine offers, the best first, opened.
+pub fn open_all() -> Vec<(AdapterSummary, Result<Device, GpuError>)> {
+    let opened = |(summary, adapter): (AdapterSummary, wgpu::Adapter)| {
+        let device = Device::of(&summary, &adapter);
+        (summary, device)
+    };
+    enumerate().into_iter().map(opened).collect()
+}
+
 /// All adapters that this machine offers, the best first.
 pub fn adapters() -> Vec<AdapterSummary> {
     enumerate().into_iter().map(|(summary, _)| summary).collect()
@@ -146,6 +156,8 @@ pub struct Device {
     tuning: Tuning,
     /// The first thing that the device or its driver complained of since it was last asked.
     complaint: Arc<Mutex<Option<Complaint>>>,
+    /// What it makes of f32, once it was asked.
+    arithmetic: Arc<OnceLock<Arithmetic>>,
 }
 
 impl Device {
@@ -160,6 +172,10 @@ impl Device {
             let found = all.into_iter().map(|(summary, _)| summary).collect();
             return Err(GpuError::NoAdapter { wanted: choice.words(), found });
         };
+        Device::of(summary, adapter)
+    }
+
+    fn of(summary: &AdapterSummary, adapter: &wgpu::Adapter) -> Result<Device, GpuError> {
         let unfit = |why: String| GpuError::Unfit { adapter: summary.name.clone(), why };
         let limits = adapter.limits();
         if limits.max_uniform_buffer_binding_size < super::pages::PAGE_BYTES {
@@ -178,7 +194,39 @@ impl Device {
             }
         });
         let tuning = Tuning::of(summary.kind, adapter.get_info().subgroup_max_size);
-        Ok(Device { device, queue, summary: summary.clone(), tuning, complaint })
+        let arithmetic = Arc::default();
+        Ok(Device { device, queue, summary: summary.clone(), tuning, complaint, arithmetic })
+    }
+
+    /// The same device, judged by what the kernel with source `wgsl` finds instead of `probe.wgsl`.
+    ///
+    /// # Errors
+    ///
+    /// As [`arithmetic`](Self::arithmetic).
+    pub fn probed(mut self, wgsl: &str) -> Result<Device, GpuError> {
+        self.arithmetic = Arc::new(OnceLock::from(Arithmetic::of(&self, wgsl)?));
+        Ok(self)
+    }
+
+    /// What the device makes of f32. It is asked once, in some milliseconds.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of, or that it does not answer.
+    pub fn arithmetic(&self) -> Result<&Arithmetic, GpuError> {
+        if let Some(known) = self.arithmetic.get() {
+            return Ok(known);
+        }
+        let found = Arithmetic::of(self, PROBE_WGSL)?;
+        Ok(self.arithmetic.get_or_init(|| found))
+    }
+
+    /// An error if exact ropes cannot rely on the device's f32.
+    pub(crate) fn certify(&self) -> Result<(), GpuError> {
+        match &self.arithmetic()?.fault {
+            None => Ok(()),
+            Some(fault) => Err(self.unfit(format!("{fault}. Take another adapter, the engine cpu, or precision fast"))),
+        }
     }
 
     /// The adapter in words.

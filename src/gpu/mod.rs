@@ -1,12 +1,16 @@
-//! The GPU: adapters, and the candidate pass in `shaders/sweep.wgsl`.
+//! The GPU: adapters, and the kernels in `shaders/`.
 
 mod adapter;
+mod arithmetic;
+mod kernel;
 mod pages;
 mod pass;
 mod tuning;
 
-pub use adapter::{AdapterChoice, AdapterKind, AdapterSummary, Device, SOFTWARE_HINT, adapters};
-pub use pass::{GpuPass, HALVES, SWEEP_WGSL};
+pub use adapter::{AdapterChoice, AdapterKind, AdapterSummary, Device, SOFTWARE_HINT, adapters, open_all};
+pub use arithmetic::{Arithmetic, PROBE_WGSL};
+pub use kernel::{DECIDE_WGSL, Deciding, Kernel, SWEEP_WGSL, Sweeping};
+pub use pass::{GpuPass, HALVES};
 pub use tuning::Tuning;
 
 /// What can go wrong with a GPU.

@@ -6,7 +6,6 @@ use wgpu::BufferUsages;
 
 use super::adapter::Device;
 use super::pass::binding;
-use crate::candidates::List;
 
 /// The size of a page in bytes: what every device can bind as a uniform buffer.
 pub(super) const PAGE_BYTES: u64 = 1 << 16;
@@ -84,9 +83,15 @@ impl Pages {
         self.round += 1;
     }
 
-    /// The place of the list of `pivot`, which is `list`; it is written there first if it is not. `None` if all blocks hold
-    /// lists of this round and none has room left.
-    pub(super) fn place(&mut self, opened: &Device, pivot: u32, list: &List) -> Option<u32> {
+    /// The place of the list of `pivot`, of `len` vertices; it is written there first, with their `coordinates`, if it is
+    /// not. `None` if all blocks hold lists of this round and none has room left.
+    pub(super) fn place(
+        &mut self,
+        opened: &Device,
+        pivot: u32,
+        len: usize,
+        coordinates: impl FnOnce() -> Vec<[f32; 2]>,
+    ) -> Option<u32> {
         let known = self.places[pivot as usize];
         if known != NOWHERE {
             let block = (known / self.block_places()) as usize;
@@ -94,7 +99,7 @@ impl Pages {
             return Some(known);
         }
         // An empty list takes a place too, so that it lies in the block in which it is.
-        let size = (list.len() as u32).max(1);
+        let size = (len as u32).max(1);
         let start = match self.blocks.get(self.open).and_then(|block| self.fit(block.filled, size)) {
             Some(start) => start,
             None => {
@@ -103,7 +108,7 @@ impl Pages {
             }
         };
         let place = self.open as u32 * self.block_places() + start;
-        self.write(opened, place, list);
+        self.write(opened, place, &coordinates());
         let block = &mut self.blocks[self.open];
         // Even, so that the next list begins at an even place too.
         block.filled = (start + size).next_multiple_of(2);
@@ -175,10 +180,9 @@ impl Pages {
         Block { buffer, bindings, filled: 0, pivots: Vec::new(), used: 0 }
     }
 
-    /// Writes the coordinates of `list` from `place` on, page by page.
-    fn write(&self, opened: &Device, place: u32, list: &List) {
-        let coordinates: Vec<[f32; 2]> = list.coordinates().collect();
-        let mut rest = &coordinates[..];
+    /// Writes `coordinates` from `place` on, page by page.
+    fn write(&self, opened: &Device, place: u32, coordinates: &[[f32; 2]]) {
+        let mut rest = coordinates;
         let mut place = place;
         while !rest.is_empty() {
             let (page, in_page) = (place / PAGE_VERTICES, place % PAGE_VERTICES);

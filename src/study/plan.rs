@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::engine::Precision;
+
 /// A study, as its file describes it. All lengths are in the scene's unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -163,11 +165,13 @@ pub struct RunPlan {
     pub block: u32,
     /// What all random numbers are made from.
     pub seed: u64,
+    /// What decides: exact signs, or f32 alone on a GPU, whose ropes can be wrong.
+    pub precision: Precision,
 }
 
 impl Default for RunPlan {
     fn default() -> Self {
-        RunPlan { traces: 10_000, block: 1000, seed: 1 }
+        RunPlan { traces: 10_000, block: 1000, seed: 1, precision: Precision::Certified }
     }
 }
 

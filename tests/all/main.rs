@@ -1,11 +1,13 @@
 //! All integration tests, in one binary.
 
+mod arithmetic;
 mod batch;
 mod built_in;
 mod cli;
 mod conservative;
 mod drawings;
 mod examples;
+mod fast;
 mod formats;
 mod gallery;
 mod golden;

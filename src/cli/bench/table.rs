@@ -92,9 +92,9 @@ fn head(environment: &Environment, setting: &Setting, plan: &Plan) -> String {
 
 /// The variant, with the widest window where that counts.
 fn variant(row: &Row) -> String {
-    match row.contender.windowed {
-        true => format!("{} to {}", row.contender.variant, row.setting.window),
-        false => row.contender.variant.to_owned(),
+    match row.contender.window(row.setting.window) {
+        Some(legs) => format!("{} to {legs}", row.contender.variant),
+        None => row.contender.variant.to_owned(),
     }
 }
 

@@ -34,14 +34,14 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     // The state comes last: without it, this can be done again.
     if study.plan().outputs.traces {
         let parts: Vec<PathBuf> = args.folders.iter().map(|folder| folder.join(TRACES)).collect();
-        let notes = provenance(&study, "merged", "several runs");
+        let notes = provenance(&study, ("merged", study.plan().run.precision.name()), "several runs");
         merge_results(&parts, &folder.path().join(TRACES), &notes, state.traces())?;
     }
     folder.remember(study.plan(), &base)?;
     folder.save(&state)?;
     let run = json!({
         "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"), "merged": args.folders,
-        "seconds_of_all_runs": state.seconds(),
+        "precision": study.plan().run.precision.name(), "seconds_of_all_runs": state.seconds(),
     });
     conclude(&folder, &study, &state, &run, args.json)
 }

@@ -19,6 +19,7 @@ use crate::cli::failure::Failure;
 use crate::cli::input::note;
 use crate::cli::interrupt::{self, Writing};
 use crate::cli::progress::{Progress, with_progress};
+use crate::cli::summary::precision;
 use crate::cli::{print, print_json};
 
 /// How often the state is saved.
@@ -79,8 +80,10 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let base = if base.as_os_str().is_empty() { PathBuf::from(".") } else { base };
     plan.run.traces = args.traces.unwrap_or(plan.run.traces);
     plan.run.seed = args.seed.unwrap_or(plan.run.seed);
+    plan.run.precision = args.engine.precision().unwrap_or(plan.run.precision);
     // What was replaced is checked again.
     let plan = plan.checked()?;
+    args.engine.check(plan.run.precision)?;
     if args.shard.of() > 1 && (plan.until.relative_error.is_some() || plan.until.seconds.is_some()) {
         return Err(Failure::input(anyhow!(
             "--shard: a shard cannot know when the whole study is certain enough; leave out [until]"
@@ -114,6 +117,13 @@ pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     let _writing = Writing::begin();
     interrupt::check()?;
     let (folder, study, state) = Folder::open(&args.folder, &args.base)?;
+    let begun = study.plan().run.precision;
+    if args.engine.precision().is_some_and(|asked| asked != begun) {
+        return Err(Failure::input(anyhow!(
+            "--precision: the study was begun with precision {}, and goes on with that only",
+            begun.name()
+        )));
+    }
     proceed(&folder, &study, state, &args.engine, args.json)
 }
 
@@ -128,7 +138,7 @@ fn proceed(
     let job = Arc::new(Job::new());
     interrupt::stops(&job);
     let (mut engines, on) = open_engines(engine, study)?;
-    let name = engines[0].name();
+    let name = (engines[0].name(), precision(&*engines[0]));
     let left = state.shard().count(study.plan().blocks()).saturating_sub(state.done());
     let traces = left * u64::from(study.plan().run.block);
     let steps = study.plan().walk.steps().map_or(0, |steps| traces * u64::from(steps));
@@ -187,7 +197,7 @@ fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn 
     let mut on = String::new();
     let mut engines = Vec::new();
     for model in study.models() {
-        let (engine, place) = args.open(model)?;
+        let (engine, place) = args.open_for(study.plan().run.precision, model)?;
         if engine.name() == "note" {
             return Err(Failure::input(anyhow!("--engine: studies are exact, which note is not; give another engine")));
         }
@@ -198,7 +208,7 @@ fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn 
 }
 
 /// What each file of rows says of where it comes from.
-pub(super) fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static str, String)> {
+pub(super) fn provenance(study: &Study, (engine, precision): (&str, &str), on: &str) -> Vec<(&'static str, String)> {
     let here = Environment::here(None);
     vec![
         ("tautline.version", here.version.to_owned()),
@@ -206,6 +216,7 @@ pub(super) fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static
         ("tautline.study", study.identity().to_owned()),
         ("tautline.seed", study.plan().run.seed.to_string()),
         ("tautline.engine", engine.to_owned()),
+        ("tautline.precision", precision.to_owned()),
         ("tautline.on", on.to_owned()),
     ]
 }
@@ -213,7 +224,7 @@ pub(super) fn provenance(study: &Study, engine: &str, on: &str) -> Vec<(&'static
 /// What the run cost and where it ran.
 fn cost(
     state: &State,
-    engine: &str,
+    (engine, precision): (&str, &str),
     on: &str,
     took: Duration,
     spent: &Spent,
@@ -222,8 +233,8 @@ fn cost(
     let here = Environment::here(None);
     let seconds = took.as_secs_f64();
     json!({
-        "version": here.version, "commit": here.commit, "engine": engine, "on": on, "processor": here.processor, "os": here.os,
-        "threads": here.threads, "shard": state.shard().to_string(),
+        "version": here.version, "commit": here.commit, "engine": engine, "precision": precision, "on": on,
+        "processor": here.processor, "os": here.os, "threads": here.threads, "shard": state.shard().to_string(),
         "traces": traces, "steps": steps, "seconds": seconds, "steps_per_second": steps as f64 / seconds,
         "seconds_of_all_runs": state.seconds(),
         "spent": {
@@ -283,7 +294,7 @@ fn draw(folder: &Folder, summary: &Summary, study: &Study, run: &serde_json::Val
 fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     let plan = study.plan();
     let (mut engines, on) = open_engines(&args.engine, study)?;
-    let name = engines[0].name();
+    let (name, precision) = (engines[0].name(), precision(&*engines[0]));
     let mut state = State::new(study, args.shard);
     let clock = Instant::now();
     let mut first = None;
@@ -297,7 +308,7 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
         Err(RunError::Plan(error)) => return Err(error.into()),
     }
     let mut text = format!(
-        "the study is sound: {} traces in {} blocks, {} walls, anchors: {}, engine {name} on {on}\n",
+        "the study is sound: {} traces in {} blocks, {} walls, anchors: {}, engine {name} ({precision}) on {on}\n",
         plan.run.traces,
         plan.blocks(),
         study.models()[0].scene().walls().len(),

@@ -1,6 +1,7 @@
 //! The table of what is measured against each other: one line a row of the report.
 
-use crate::engine::{Cpu, Engine, EngineError, Funnel, Gpu, Note, Reference};
+use crate::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Note, Precision, Reference};
+use crate::fast::MOST_LEGS;
 use crate::gpu::Device;
 use crate::scene::Model;
 
@@ -43,6 +44,8 @@ pub(super) enum Promise {
 enum Open {
     /// On a GPU.
     Gpu(for<'m> fn(Gpu<'m>, usize) -> Gpu<'m>),
+    /// On a GPU that decides alone.
+    FastGpu,
     /// On all cores.
     Threads(for<'m> fn(&'m Model, usize) -> Box<dyn Engine + 'm>),
     /// On one thread.
@@ -50,7 +53,7 @@ enum Open {
 }
 
 /// All contenders, in the order of the report. The baseline, `note`, is one of them.
-pub const CONTENDERS: [Contender; 7] = [
+pub const CONTENDERS: [Contender; 8] = [
     Contender {
         engine: "gpu",
         variant: "windows",
@@ -71,6 +74,13 @@ pub const CONTENDERS: [Contender; 7] = [
         promise: Promise::Events,
         windowed: false,
         open: Open::Gpu(|gpu, _| gpu.window(1).keep_all()),
+    },
+    Contender {
+        engine: "gpu",
+        variant: "fast, windows",
+        promise: Promise::Nothing,
+        windowed: true,
+        open: Open::FastGpu,
     },
     Contender {
         engine: "funnel",
@@ -108,6 +118,12 @@ impl Contender {
         format!("{} ({})", self.engine, self.variant)
     }
 
+    /// The most legs that one of its queries covers if the setting allows `legs`; `None` if that changes nothing.
+    pub fn window(&self, legs: usize) -> Option<usize> {
+        let most = if matches!(self.open, Open::FastGpu) { MOST_LEGS } else { usize::MAX };
+        self.windowed.then_some(legs.min(most))
+    }
+
     /// Whether this is what all others are compared with.
     pub fn is_baseline(&self) -> bool {
         self.engine == "note"
@@ -115,7 +131,7 @@ impl Contender {
 
     /// Whether it cannot do without a GPU.
     pub fn needs_gpu(&self) -> bool {
-        matches!(self.open, Open::Gpu(_))
+        matches!(self.open, Open::Gpu(_) | Open::FastGpu)
     }
 
     /// Whether it evaluates many traces at once, on all cores or in rounds of the GPU.
@@ -126,21 +142,26 @@ impl Contender {
     /// How many threads it computes on; a GPU's own are not counted.
     pub fn threads(&self) -> usize {
         match self.open {
-            Open::Gpu(_) | Open::Threads(_) => rayon::current_num_threads(),
+            Open::Gpu(_) | Open::FastGpu | Open::Threads(_) => rayon::current_num_threads(),
             Open::Thread(_) => 1,
         }
     }
 
-    /// `certified` for engines whose ropes are exact, `f64` for those that trust rounded numbers.
+    /// `certified` for engines whose ropes are exact, `fast` for the GPU that trusts f32, `f64` for the note's listing.
     pub fn precision(&self) -> &'static str {
-        if self.promise == Promise::Nothing { "f64" } else { "certified" }
+        match (self.open, self.promise) {
+            (Open::FastGpu, _) => Precision::Fast.name(),
+            (_, Promise::Nothing) => "f64",
+            _ => Precision::Certified.name(),
+        }
     }
 
     /// Makes the engine for `model`; `None` if it needs a GPU and there is none.
     pub(super) fn open<'m>(&self, model: &'m Model, gear: &Gear) -> Result<Option<Box<dyn Engine + 'm>>, EngineError> {
         Ok(Some(match (self.open, &gear.device) {
-            (Open::Gpu(_), None) => return Ok(None),
+            (Open::Gpu(_) | Open::FastGpu, None) => return Ok(None),
             (Open::Gpu(shape), Some(device)) => Box::new(shape(Gpu::new(device.clone(), model)?, gear.window)),
+            (Open::FastGpu, Some(device)) => Box::new(FastGpu::new(device.clone(), model)?.window(gear.window)),
             (Open::Threads(make), _) => make(model, gear.window),
             (Open::Thread(make), _) => make(model),
         }))

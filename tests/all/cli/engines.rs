@@ -97,3 +97,23 @@ fn traces_in_parquet_are_the_same_traces() {
     writer.close().unwrap();
     assert!(eval(&folder, "--traces t.parquet", "jsonl") == eval(&folder, "--traces t.csv", "jsonl"));
 }
+
+#[test]
+fn fast_is_named_and_sound() {
+    let folder = Folder::floor_plan(30, 200);
+    let args = "eval --scene s.geojson --traces t.csv --precision fast --adapter software --out f.jsonl --json";
+    let shown = folder.done(args);
+    assert!(shown.stderr.contains("f32 decides alone"), "{}", shown.stderr);
+    let report: Value = serde_json::from_str(&shown.stdout).unwrap();
+    assert_eq!(
+        (&report["engine"], &report["precision"], &report["traces"]),
+        (&"gpu".into(), &"fast".into(), &30.into())
+    );
+    for row in rows(&folder.read("f.jsonl")) {
+        assert_eq!(row["depth"].as_u64().unwrap() as usize, row["wraps"].as_array().unwrap().len(), "{row}");
+    }
+    // Without an engine it is one of the GPU, be that a software one.
+    assert!(folder.done(&args.replace("--adapter software", "")).stderr.starts_with("engine: gpu on "));
+    let table = folder.done("eval --scene s.geojson --traces t.csv --engine gpu --precision certified").stdout;
+    assert!(table.contains("engine   gpu (certified) on "), "{table}");
+}

@@ -31,7 +31,7 @@ fn eval_alone_shows_the_example() {
 fn long_work_shows_no_progress_where_nobody_watches() {
     // The example takes the reference seconds; a bar would show after one.
     let shown = Folder::new().done("eval --engine reference");
-    assert!(shown.stdout.contains("engine   reference on one thread\n"), "{}", shown.stdout);
+    assert!(shown.stdout.contains("engine   reference (certified) on one thread\n"), "{}", shown.stdout);
     assert_eq!(shown.stderr, "");
 }
 
@@ -60,6 +60,7 @@ fn eval_sums_up_in_json() {
     for (field, expected) in [
         ("scene", scene),
         ("engine", json!("gpu")),
+        ("precision", json!("certified")),
         ("version", json!(env!("CARGO_PKG_VERSION"))),
         ("traces", json!(4)),
         ("steps", json!(12)),

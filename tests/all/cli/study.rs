@@ -221,6 +221,34 @@ fn one_trace_is_replayed() {
 }
 
 #[test]
+fn the_precision_belongs_to_a_study() {
+    let folder = study();
+    let text = STUDY.replace("traces = 5350", "traces = 500\nprecision = \"fast\"");
+    folder.write("f.toml", &text);
+    folder.done("study run f.toml --out a --adapter software");
+    folder.done("study run s.toml --traces 500 --precision fast --out b --engine gpu --adapter software");
+    folder.done("study run f.toml --precision certified --out c --engine cpu");
+    folder.done("study run s.toml --traces 500 --out d --engine cpu");
+    let precision = |run: &str| {
+        let [answer, cost] = ["summary", "run"].map(|name| json(&folder, &format!("{run}/{name}.json")));
+        assert_eq!(answer["study"]["run"]["precision"], cost["precision"]);
+        (cost["precision"].as_str().unwrap().to_owned(), answer["identity"].clone())
+    };
+    let [a, b, c, d] = ["a", "b", "c", "d"].map(precision);
+    assert_eq!(["fast", "certified"], [&*a.0, &*c.0]);
+    assert!(a == b && c == d && a.1 != c.1, "{a:?} {b:?} {c:?} {d:?}");
+    assert!(answer(&folder, "a") == answer(&folder, "b") && answer(&folder, "c") == answer(&folder, "d"));
+    assert!(folder.done("study replay a --trace 7").stdout.starts_with("trace 7: 200 steps, "));
+    // What was begun with one precision goes on with that.
+    folder.refused(2, "study resume a --precision certified", &["begun with precision fast"]);
+    folder.refused(2, "study resume a --engine cpu", &["precision fast is one of the engine gpu"]);
+    folder.refused(2, "study run f.toml --out no --engine cpu", &["precision fast is one of the engine gpu"]);
+    assert!(!folder.path("no").exists());
+    folder.write("wrong.toml", &text.replace("\"fast\"", "\"exact\""));
+    folder.refused(2, "study run wrong.toml --out no", &["line ", "exact", "certified", "fast"]);
+}
+
+#[test]
 fn given_traces_are_studied_too() {
     let folder = Folder::floor_plan(700, 50);
     folder.write(

@@ -47,6 +47,11 @@ fn unknown_arguments_are_answered_with_the_known_ones() {
         &format!("{EVAL} --engine cpu --adapter software"),
         &["--adapter goes with --engine gpu or auto"],
     );
+    for engine in ["cpu", "reference", "funnel", "note"] {
+        let fault = ["precision fast is one of the engine gpu", "--engine gpu"];
+        folder.refused(2, &format!("{EVAL} --engine {engine} --precision fast"), &fault);
+    }
+    folder.refused(2, &format!("{EVAL} --precision exact"), &["exact", "certified", "fast"]);
     folder.refused(2, "evaluate", &["evaluate", "eval"]);
     folder.refused(2, "eval --trace t.csv", &["--trace", "--traces"]);
 }

@@ -1,0 +1,87 @@
+//! The engine of the product in a hurry: the compute shader decides in f32, and nothing confirms it.
+
+use super::hasty::Hasty;
+use super::{Engine, EngineError, Job, Precision, WINDOW, batch};
+use crate::candidates::{LISTS_BUDGET, Lists};
+use crate::gpu::{AdapterSummary, DECIDE_WGSL, Deciding, Device, GpuError, GpuPass, HALVES, Tuning};
+use crate::rope::TraceRecord;
+use crate::scene::Model;
+use crate::trace::SettledTrace;
+
+/// Evaluates traces on a GPU that decides alone, in f32, for one model. See [`fast`](crate::fast) for what that is worth.
+///
+/// A trace's record depends on the device and the scene, but not on the other traces nor on how many are on the device at a
+/// time.
+pub struct FastGpu<'m> {
+    lists: Lists<'m>,
+    pass: GpuPass<Deciding>,
+    window: usize,
+}
+
+impl<'m> FastGpu<'m> {
+    /// An engine for `model` on an opened adapter.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of.
+    pub fn new(device: Device, model: &'m Model) -> Result<Self, GpuError> {
+        let tuning = device.tuning();
+        Self::with(device, model, tuning, DECIDE_WGSL)
+    }
+
+    /// The same with `tuning` instead of what suits the adapter and `wgsl` instead of `decide.wgsl`.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of, be it the shader or the memory.
+    pub fn with(device: Device, model: &'m Model, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
+        // At once: only the device answers. And never told how far traces go: what is listed is then the same for all.
+        let lists = Lists::new(model).after(0);
+        let n = model.vertices().len();
+        let pass = GpuPass::new(device, lists.keys(), n, LISTS_BUDGET, tuning, wgsl)?;
+        Ok(FastGpu { lists, pass, window: WINDOW })
+    }
+
+    /// The same engine with windows of at most `legs` legs, at least 1.
+    #[must_use]
+    pub fn window(mut self, legs: usize) -> Self {
+        self.window = legs.max(1);
+        self
+    }
+
+    /// The same engine, trying all vertices in every query, not only those that the pivot sees.
+    #[must_use]
+    pub fn keep_all(mut self) -> Self {
+        self.lists = self.lists.keep_all();
+        self.pass.forget();
+        self
+    }
+
+    /// The adapter on which it runs.
+    pub fn adapter(&self) -> &AdapterSummary {
+        self.pass.device().summary()
+    }
+}
+
+impl Engine for FastGpu<'_> {
+    fn name(&self) -> &'static str {
+        "gpu"
+    }
+
+    fn precision(&self) -> Option<Precision> {
+        Some(Precision::Fast)
+    }
+
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        batch::evaluate::<Hasty>(&mut self.pass, &self.lists, self.window, traces, job)
+    }
+
+    fn batch(&self) -> usize {
+        HALVES * self.pass.capacity()
+    }
+
+    fn forget(&mut self) {
+        self.lists.forget();
+        self.pass.forget();
+    }
+}

@@ -1,0 +1,215 @@
+//! What a device makes of f32, found out by asking it: the candidate pass relies on some of it.
+
+use std::sync::mpsc;
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec2, Vec2};
+use wgpu::{BufferUsages, PollType};
+
+use super::pass::{PATIENCE, binding, buffer};
+use super::{Device, GpuError};
+use crate::candidates::{ARITHMETIC, LONGEST_NORMAL};
+
+/// The source of the kernel that asks.
+pub const PROBE_WGSL: &str = include_str!("../../shaders/probe.wgsl");
+
+/// How many samples there are: enough to meet every way of rounding many times, few enough for a millisecond.
+const SAMPLES: usize = 4096;
+
+/// How many lanes a workgroup has; the same number stands in the shader.
+const WORKGROUP: u32 = 64;
+
+/// The least f32 that is not subnormal.
+const NORMAL: f64 = f32::MIN_POSITIVE as f64;
+
+/// The shader's `Sample`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Sample {
+    normal: Vec2,
+    p: Vec2,
+    offset: f32,
+    unused: [f32; 3],
+}
+
+/// The shader's `Result`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Outcome {
+    product: f32,
+    sum: f32,
+    both: f32,
+    rest: f32,
+    value: f32,
+    least: f32,
+    unused: [f32; 2],
+}
+
+/// What a device makes of f32, as far as a few thousand samples show.
+///
+/// The bound of the candidate pass assumes that a product or sum is one of the two nearest f32, or 0 where it is subnormal,
+/// that products and sums may be fused and put in another order, and that a minimum is one of its arguments. Whether a
+/// device fuses, flushes or reassociates is told because it decides close calls with `--precision fast`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arithmetic {
+    /// Whether all products and sums are the nearest f32, not only one of the two nearest.
+    pub rounds_to_nearest: bool,
+    /// Whether a product and a sum are rounded once.
+    pub fuses: bool,
+    /// Whether subnormal products become 0.
+    pub flushes: bool,
+    /// Whether sums are put in another order than they are written in.
+    pub reassociates: bool,
+    /// The largest error of a half-plane's value, as a share of what the bound allows.
+    pub largest_error: f64,
+    /// What the candidate pass cannot live with.
+    pub fault: Option<String>,
+}
+
+impl Arithmetic {
+    /// Asks the device by the kernel with source `wgsl`, in some milliseconds.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of, or that it does not answer.
+    pub fn of(device: &Device, wgsl: &str) -> Result<Self, GpuError> {
+        let samples = samples();
+        let outcomes = run(device, wgsl, &samples)?;
+        let mut found = Arithmetic {
+            rounds_to_nearest: true,
+            fuses: false,
+            flushes: false,
+            reassociates: false,
+            largest_error: 0.0,
+            fault: None,
+        };
+        for (sample, outcome) in samples.iter().zip(&outcomes) {
+            found.learn(sample, outcome);
+        }
+        Ok(found)
+    }
+
+    fn learn(&mut self, sample: &Sample, outcome: &Outcome) {
+        let Sample { normal, p, offset, .. } = *sample;
+        // Exact: 48 bits, and sums of numbers at most 24 binary orders of magnitude apart, or of which one is 0.
+        let (product, sum) = (f64::from(normal.x) * f64::from(p.x), f64::from(normal.x) + f64::from(offset));
+        let exact = normal.as_dvec2().dot(p.as_dvec2()) + f64::from(offset);
+        let error = (f64::from(outcome.value) - exact).abs() / ARITHMETIC;
+        let least = normal.x.min(p.x).min(offset);
+        let why = if !is_near(outcome.product, product) {
+            Some(("product", outcome.product, product))
+        } else if !is_near(outcome.sum, sum) {
+            Some(("sum", outcome.sum, sum))
+        } else if !is_near(outcome.least, least.into()) {
+            Some(("minimum", outcome.least, least.into()))
+        } else if error.is_nan() || error > 1.0 {
+            Some(("value of a half-plane", outcome.value, exact))
+        } else {
+            None
+        };
+        if let (Some((what, given, right)), None) = (why, &self.fault) {
+            self.fault =
+                Some(format!("its f32 are not what exact ropes rely on: a {what} is {given:e} instead of {right:e}"));
+        }
+        self.largest_error = self.largest_error.max(error);
+        self.flushes |= outcome.product == 0.0 && product != 0.0 && product.abs() < NORMAL;
+        let is_flushed = product.abs() < NORMAL;
+        self.rounds_to_nearest &= (is_flushed || outcome.product == product as f32) && outcome.sum == sum as f32;
+        let (once, twice) = (normal.x.mul_add(p.x, offset), normal.x * p.x + offset);
+        self.fuses |= once != twice && outcome.both == once;
+        let rest = (normal.x + offset) - normal.x;
+        self.reassociates |= rest != offset && outcome.rest == offset;
+    }
+}
+
+/// Whether `result` is one of the two f32 nearest to `exact`, or 0 for a subnormal one.
+fn is_near(result: f32, exact: f64) -> bool {
+    let error = (f64::from(result) - exact).abs();
+    error <= exact.abs() * f64::from(f32::EPSILON) || (exact.abs() < NORMAL && error <= NORMAL)
+}
+
+/// Half-planes and points close to their lines, where rounding counts most; some have subnormal products.
+fn samples() -> Vec<Sample> {
+    let mut state = 1u64;
+    // SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), from -1 to 1.
+    let mut draw = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ (z >> 31)) as i64 as f64 / 2f64.powi(63)
+    };
+    let sample = |i: usize| {
+        let along = DVec2::from_angle(draw() * std::f64::consts::PI);
+        let normal = (along * (1.0 + (LONGEST_NORMAL - 1.0) * draw().abs())).as_vec2();
+        let p = DVec2::new(draw(), draw()).as_vec2();
+        let close = draw() * 2f64.powi(-(i as i32 % 24));
+        let offset = (close - normal.as_dvec2().dot(p.as_dvec2())) as f32;
+        let sample = Sample { normal, p, offset, unused: [0.0; 3] };
+        if i % 16 > 0 {
+            return sample;
+        }
+        let (tiny, less) = (2f32.powi(-100), 2f32.powi(-30));
+        Sample { normal: Vec2::new(normal.x * tiny, 0.0), p: Vec2::new(p.x * less, p.y), offset: 0.0, ..sample }
+    };
+    (0..SAMPLES).map(sample).collect()
+}
+
+fn run(opened: &Device, wgsl: &str, samples: &[Sample]) -> Result<Vec<Outcome>, GpuError> {
+    let Device { device, queue, .. } = opened;
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("probe"),
+        entries: &[
+            binding(0, wgpu::BufferBindingType::Storage { read_only: true }, false),
+            binding(1, wgpu::BufferBindingType::Storage { read_only: false }, false),
+        ],
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("probe"),
+        layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("probe"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        })),
+        module: &device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("probe"),
+            source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+        }),
+        entry_point: Some("probe"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    let bytes = size_of_val(samples);
+    let asked = buffer(device, "samples", bytes, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+    let results = buffer(device, "results", bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+    let readback = buffer(device, "readback", bytes, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
+    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("probe"),
+        layout: &layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: asked.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: results.as_entire_binding() },
+        ],
+    });
+    opened.check()?;
+    queue.write_buffer(&asked, 0, bytemuck::cast_slice(samples));
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("probe") });
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &bindings, &[]);
+        pass.dispatch_workgroups((samples.len() as u32).div_ceil(WORKGROUP), 1, 1);
+    }
+    encoder.copy_buffer_to_buffer(&results, 0, &readback, 0, bytes as u64);
+    let (sender, mapped) = mpsc::sync_channel(1);
+    encoder.map_buffer_on_submit(&readback, wgpu::MapMode::Read, .., move |result| {
+        let _ = sender.send(result);
+    });
+    let submission = queue.submit([encoder.finish()]);
+    let wait = PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
+    device.poll(wait).map_err(|e| opened.failed(e))?;
+    opened.check()?;
+    mapped.recv().map_err(|e| opened.failed(e))?.map_err(|e| opened.failed(e))?;
+    let view = readback.get_mapped_range(..).map_err(|e| opened.failed(e))?;
+    Ok(bytemuck::pod_collect_to_vec(&view[..]))
+}

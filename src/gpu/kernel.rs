@@ -1,0 +1,144 @@
+//! The kernels, and what they have in common: each lane answers one query by trying the vertices of a pivot's list.
+
+use bytemuck::Pod;
+
+use crate::candidates::{Found, Query};
+use crate::fast::{Answer, MOST_LEGS, Question};
+
+/// The source of the candidate pass.
+pub const SWEEP_WGSL: &str = include_str!("../../shaders/sweep.wgsl");
+
+/// The source of the kernel that decides in f32.
+pub const DECIDE_WGSL: &str = include_str!("../../shaders/decide.wgsl");
+
+/// A kernel: a shader, and what it is asked and answers.
+pub trait Kernel {
+    /// What one lane is asked; a struct of the shader.
+    type Query: Pod + Send + Sync;
+    /// What it answers; a struct of the shader.
+    type Found: Pod + Default + Send + Sync;
+    /// The name of its entry point, and of its file.
+    const NAME: &'static str;
+    /// The most points of a trace that come with a query; 0 for a kernel that needs none.
+    const POINTS: usize;
+
+    /// The query as it is sent: its list begins at place `first`, its points at number `points` of the round's.
+    fn placed(query: &Self::Query, first: u32, points: u32) -> Self::Query;
+
+    /// Where the vertices to be tried begin and how many they are.
+    fn tried(query: &Self::Query) -> (u32, u32);
+}
+
+/// The candidate pass, `shaders/sweep.wgsl`.
+#[derive(Debug, Clone, Copy)]
+pub struct Sweeping;
+
+impl Kernel for Sweeping {
+    type Query = Query;
+    type Found = Found;
+    const NAME: &'static str = "sweep";
+    const POINTS: usize = 0;
+
+    fn placed(query: &Query, first: u32, _: u32) -> Query {
+        Query { first, ..*query }
+    }
+
+    fn tried(query: &Query) -> (u32, u32) {
+        (query.first, query.count)
+    }
+}
+
+/// The kernel that decides in f32, `shaders/decide.wgsl`.
+#[derive(Debug, Clone, Copy)]
+pub struct Deciding;
+
+impl Kernel for Deciding {
+    type Query = Question;
+    type Found = Answer;
+    const NAME: &'static str = "decide";
+    const POINTS: usize = MOST_LEGS + 1;
+
+    fn placed(question: &Question, first: u32, points: u32) -> Question {
+        Question { first, points, ..*question }
+    }
+
+    fn tried(question: &Question) -> (u32, u32) {
+        (question.first, question.count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use naga::{Module, TypeInner};
+
+    use super::super::pages::{PAGE_BYTES, PAGE_VERTICES};
+    use super::super::pass::Span;
+    use super::*;
+    use crate::candidates::ROOM;
+    use crate::fast::{NOTHING, UNWRAP};
+
+    fn shader(wgsl: &str) -> Module {
+        naga::front::wgsl::parse_str(wgsl).unwrap_or_else(|e| panic!("{}", e.emit_to_string(wgsl)))
+    }
+
+    /// The size of a struct of the shader and the names and offsets of its members.
+    fn layout(module: &Module, name: &str) -> (u32, Vec<(String, u32)>) {
+        let ty =
+            module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).unwrap_or_else(|| panic!("no {name}"));
+        let TypeInner::Struct { members, span } = &ty.1.inner else { panic!("{name} is no struct") };
+        (*span, members.iter().map(|m| (m.name.clone().unwrap(), m.offset)).collect())
+    }
+
+    #[test]
+    fn the_shaders_are_valid() {
+        use naga::valid::{Capabilities, ValidationFlags, Validator};
+        for wgsl in [SWEEP_WGSL, DECIDE_WGSL] {
+            Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&shader(wgsl)).unwrap();
+        }
+    }
+
+    /// The members of a host struct with their offsets.
+    macro_rules! members {
+        ($ty:ty: $($member:ident),*) => {
+            vec![$((stringify!($member).to_owned(), offset_of!($ty, $member) as u32)),*]
+        };
+    }
+
+    #[test]
+    fn host_and_shaders_lay_their_structs_out_alike() {
+        let module = shader(SWEEP_WGSL);
+        let query = members!(Query: right, first, left, count, far, unused);
+        assert_eq!(layout(&module, "Query"), (size_of::<Query>() as u32, query));
+        assert_eq!(layout(&module, "Found"), (size_of::<Found>() as u32, members!(Found: count, places)));
+        let module = shader(DECIDE_WGSL);
+        let question = members!(Question: right, left, ahead, origin, start, way, reach, dir, back, wrapped, first, count, points, legs, barred);
+        let (size, members) = layout(&module, "Question");
+        assert_eq!((size, &members[..question.len()]), (size_of::<Question>() as u32, &question[..]));
+        assert_eq!(
+            layout(&module, "Answer"),
+            (size_of::<Answer>() as u32, members!(Answer: leg, place, dir, unused, at))
+        );
+        for wgsl in [SWEEP_WGSL, DECIDE_WGSL] {
+            let module = shader(wgsl);
+            let (size, span) = layout(&module, "Span");
+            assert_eq!((size, &span[..2]), (size_of::<Span>() as u32, &members!(Span: first, end)[..]));
+            let (size, page) = layout(&module, "Page");
+            assert_eq!(u64::from(size), PAGE_BYTES);
+            assert_eq!(page.last(), Some(&("pairs".to_owned(), PAGE_BYTES as u32 - 8 * PAGE_VERTICES)));
+            assert_eq!(page[0], ("first".to_owned(), 0));
+        }
+    }
+
+    #[test]
+    fn host_and_shaders_agree_on_numbers() {
+        assert!(SWEEP_WGSL.contains(&format!("count < {ROOM}u")));
+        for wgsl in [SWEEP_WGSL, DECIDE_WGSL] {
+            assert!(wgsl.contains(&format!("const PAGE: u32 = {PAGE_VERTICES}u;")));
+        }
+        assert!(DECIDE_WGSL.contains(&format!("const NOTHING: u32 = {NOTHING:#x}u;")));
+        assert!(DECIDE_WGSL.contains(&format!("const UNWRAP: u32 = {UNWRAP:#x}u;")));
+        assert!(DECIDE_WGSL.contains(&format!("const MARGIN: f32 = {};", 2f64.powi(-18))));
+    }
+}

@@ -1,0 +1,67 @@
+//! What a device makes of f32: the software adapter is fit for exact ropes, and one that is not is refused for them.
+
+use tautline::engine::{FastGpu, Gpu};
+use tautline::example::floor_plan;
+use tautline::gpu::{Arithmetic, GpuError, PROBE_WGSL};
+use tautline::scene::Model;
+
+use crate::support::software;
+
+#[test]
+fn the_software_adapter_is_fit_for_exact_ropes() {
+    let device = software();
+    let found = device.arithmetic().unwrap();
+    assert_eq!(found.fault, None);
+    assert!(found.largest_error > 0.0 && found.largest_error <= 1.0, "{found:?}");
+    assert_eq!(found, &Arithmetic::of(&device, PROBE_WGSL).unwrap());
+}
+
+/// Each makes the device another one, and what that is found to be.
+const FAULTS: [(&str, &str, &str); 5] = [
+    (
+        "let product = sample.normal.x * sample.p.x;",
+        "let product = sample.normal.x * sample.p.x * 1.0000002;",
+        "a product",
+    ),
+    ("let sum = sample.normal.x + sample.offset;", "let sum = sample.normal.x + sample.offset * 1.000001;", "a sum"),
+    ("min(min(", "max(min(", "a minimum"),
+    // As with 16 bits.
+    (
+        "sample.normal.y * sample.p.y + sample.offset;",
+        "sample.normal.y * sample.p.y + sample.offset + 0.00001;",
+        "half-plane",
+    ),
+    ("product, sum, both, rest, value,", "product, sum, both, rest, bitcast<f32>(0x7fc00000u + id.x),", "half-plane"),
+];
+
+#[test]
+fn a_device_with_other_arithmetic_is_refused_for_exact_ropes() {
+    let model = Model::new(floor_plan(), None).unwrap();
+    for (right, wrong, what) in FAULTS {
+        assert_eq!(PROBE_WGSL.matches(right).count(), 1, "{right:?}");
+        let device = software().probed(&PROBE_WGSL.replace(right, wrong)).unwrap();
+        let Err(error) = Gpu::new(device.clone(), &model) else { panic!("{wrong} was taken") };
+        assert!(matches!(error, GpuError::Unfit { .. }) && error.to_string().contains(what), "{error}");
+        assert!(error.to_string().ends_with("Take another adapter, the engine cpu, or precision fast"), "{error}");
+        FastGpu::new(device, &model).unwrap();
+    }
+}
+
+/// Ways of computing that exact ropes live with are told from each other.
+#[test]
+fn ways_of_rounding_are_found_out() {
+    let device = software();
+    let found = |right: &str, wrong: &str| {
+        assert_eq!(PROBE_WGSL.matches(right).count(), 1, "{right:?}");
+        Arithmetic::of(&device, &PROBE_WGSL.replace(right, wrong)).unwrap()
+    };
+    let down = "let sum = bitcast<f32>(bitcast<u32>(sample.normal.x + sample.offset) - 1u);";
+    let down = found("let sum = sample.normal.x + sample.offset;", down);
+    assert!(!down.rounds_to_nearest);
+    let reordered = found("(sample.normal.x + sample.offset) - sample.normal.x;", "sample.offset;");
+    assert!(reordered.reassociates && reordered.fault.is_none(), "{reordered:?}");
+    let tiny = "select(0.0, sample.normal.x * sample.p.x, abs(sample.normal.x * sample.p.x) > 1e-30)";
+    let flushed = found("let product = sample.normal.x * sample.p.x;", &format!("let product = {tiny};"));
+    assert!(flushed.flushes && flushed.fault.is_none(), "{flushed:?}");
+    assert!(Arithmetic::of(&device, "this is no shader").is_err());
+}

@@ -1,0 +1,369 @@
+//! What `--precision fast` promises: the reference's ropes where f32 holds all products exactly; and everywhere that it comes
+//! to an end, with a record that is sound in itself and does not depend on the batch.
+
+use glam::{DVec2, Vec2};
+use proptest::prelude::*;
+use proptest::test_runner::{TestError, TestRunner};
+use tautline::candidates::LISTS_BUDGET;
+use tautline::engine::{Engine, FastGpu, Gpu, Job, Reference};
+use tautline::example::{Walker, floor_plan, random_walls, walks};
+use tautline::fast::{Answer, MOST_LEGS, NOTHING, Question, decide};
+use tautline::gpu::{DECIDE_WGSL, Deciding, Device, GpuPass, Tuning};
+use tautline::rope::{TraceRecord, replay};
+use tautline::scene::{Model, Scene};
+use tautline::trace::{SettledTrace, Trace, settle};
+
+use crate::scenes::{KINDS, Kind, Recipe, recipe};
+use crate::support::{cases, posts, software};
+
+fn fast<'m>(device: &Device, model: &'m Model) -> FastGpu<'m> {
+    FastGpu::new(device.clone(), model).unwrap()
+}
+
+fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
+    engine.evaluate(traces, &Job::new()).unwrap()
+}
+
+/// Every number is finite, and the numbers, the rope and the events of a record say the same.
+fn is_sound(model: &Model, trace: &SettledTrace, record: &TraceRecord) {
+    assert_eq!((record.trace, record.steps), (trace.id(), trace.steps() as u64));
+    assert!(record.length.is_finite() && record.max_length.is_finite());
+    assert!(record.max_length >= record.length && record.max_depth >= record.depth);
+    assert_eq!(record.depth as usize, record.wraps.len());
+    assert!(record.pull.is_none_or(|pull| (pull.length() - 1.0).abs() < 1e-9));
+    assert!(record.events.is_sorted_by_key(|event| event.step));
+    assert!(record.events.iter().all(|event| event.step as u64 <= record.steps));
+    let end = *trace.points().last().unwrap();
+    let steps = record.steps as usize;
+    replay(model.anchor(), model.vertices(), steps + 1, &record.events, |k, rope| {
+        if k == steps {
+            let wraps: Vec<_> = rope.taut(end).iter().map(|c| (c.at, c.side)).collect();
+            assert_eq!(wraps, record.wraps);
+            assert_eq!(rope.length(end), record.length);
+        }
+    });
+}
+
+/// Runs `test` on random scenes of one kind.
+fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Recipe, &Model)) {
+    let default = ProptestConfig::default();
+    let cases = cases * default.cases / 256;
+    let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..default });
+    let result = runner.run(&recipe(kind, touching), |recipe| {
+        test(&recipe, &recipe.model());
+        Ok(())
+    });
+    if let Err(TestError::Fail(why, recipe)) = &result {
+        panic!("{kind:?}, touching {touching}: {why}\n{recipe:?}");
+    }
+    result.unwrap();
+}
+
+/// A wall: from, to, and whether it is made one along x or y.
+type Wall = ([i32; 2], [i32; 2], bool);
+
+/// A walk: its moves, and the unit in which they are.
+type Walk = (Vec<[i32; 2]>, f64);
+
+/// Walls between whole numbers, and walks of quarters.
+fn whole_numbers() -> impl Strategy<Value = (Vec<Wall>, Vec<Walk>)> {
+    let place = || [-12..=12i32, -12..=12];
+    let walls = prop::collection::vec((place(), place(), any::<bool>()), 1..40);
+    let moves = prop::collection::vec(place(), 20..200);
+    (walls, prop::collection::vec((moves, prop::sample::select(vec![0.25, 0.5, 1.0])), 3))
+}
+
+/// A scene of such walls, and of such walks what touches no wall: no product is rounded in f32, while many signs are 0.
+fn whole_scene(walls: &[Wall], walks: &[Walk]) -> (Model, Vec<SettledTrace>) {
+    let point = |[x, y]: [i32; 2]| DVec2::new(x.into(), y.into());
+    let along = |[x, y]: [i32; 2], to: [i32; 2]| if to[0] % 2 == 0 { [to[0], y] } else { [x, to[1]] };
+    let ends = walls.iter().map(|&(from, to, is_along)| [from, if is_along { along(from, to) } else { to }]);
+    let scene = Scene::new(ends.map(|ends| ends.map(point))).unwrap();
+    // Walls between whole numbers that pass through this point are longer than these.
+    let model = Model::new(scene, Some(DVec2::new(1.0 / 64.0, 0.5))).unwrap();
+    let walk = |(id, (moves, unit)): (u64, &Walk)| {
+        let mut points = vec![model.anchor()];
+        for &by in moves {
+            let here = points[points.len() - 1];
+            let next = here + point(by) * *unit;
+            if next.abs().max_element() < 16.0 && model.is_clear(here, next) {
+                points.push(next);
+            }
+        }
+        settle(&model, &Trace { id, points })
+    };
+    let traces = (0..).zip(walks).map(walk).collect();
+    (model, traces)
+}
+
+#[test]
+fn where_f32_is_exact_fast_is_the_reference() {
+    let device = software();
+    let events = std::cell::Cell::new(0);
+    let cases = ProptestConfig::default().cases / 2;
+    let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
+    let result = TestRunner::new(config).run(&whole_numbers(), |(walls, walks)| {
+        let (model, traces) = whole_scene(&walls, &walks);
+        assert!(traces.iter().all(|trace| trace.is_plain() && trace.violation().is_none()));
+        let truth = run(&mut Reference::new(&model), &traces);
+        assert_eq!(run(&mut fast(&device, &model), &traces), truth);
+        assert_eq!(run(&mut fast(&device, &model).keep_all(), &traces), truth);
+        assert_eq!(run(&mut fast(&device, &model).window(3), &traces), truth);
+        events.set(events.get() + truth.iter().map(|record| record.events.len()).sum::<usize>());
+        Ok(())
+    });
+    result.unwrap_or_else(|error| panic!("{error}"));
+    assert!(events.get() > 10 * cases as usize, "only {} events were compared", events.get());
+}
+
+#[test]
+fn records_are_sound_whatever_the_scene() {
+    let device = software();
+    for kind in KINDS {
+        for touching in [false, true] {
+            check(kind, touching, 20, |recipe, model| {
+                let lawful = (0..3).map(|id| recipe.trace(model, id));
+                let lawless = (3..6).map(|id| recipe.lawless_trace(model, id));
+                let traces: Vec<_> = lawful.chain(lawless).map(|trace| settle(model, &trace)).collect();
+                for mut engine in [fast(&device, model), fast(&device, model).keep_all()] {
+                    let records = run(&mut engine, &traces);
+                    traces.iter().zip(&records).for_each(|(trace, record)| is_sound(model, trace, record));
+                }
+            });
+        }
+    }
+    for case in cases() {
+        let model = case.model();
+        let traces = case.settled(&model);
+        let records = run(&mut fast(&device, &model), &traces);
+        traces.iter().zip(&records).for_each(|(trace, record)| is_sound(&model, trace, record));
+    }
+}
+
+/// Scenes and traces at the ends of what is taken: 2^500, 2^-450, both at once, and a tiny scene 10^12 times its size away.
+#[test]
+fn records_are_sound_at_the_ends_of_the_range() {
+    let device = software();
+    let (huge, tiny) = (2f64.powi(500), 2f64.powi(-450));
+    let walls =
+        [[[1.0, -0.5], [1.0, 0.75]], [[2.0, 0.0], [3.0, 0.0]], [[4.0, 0.0], [5.0, 0.0]], [[-1.0, 0.25], [-1.0, -2.0]]];
+    let ring = [[0.25, -1.0], [3.5, -1.5], [6.0, 0.5], [2.5, 1.5], [-2.0, 2.5], [-2.5, -2.5], [0.5, -0.25]];
+    let offset = DVec2::new(3e12, -1e12);
+    let stretches =
+        [(1.0, 1.0), (huge / 8.0, 1.0), (4.0 * tiny, 1.0), (4.0 * tiny, huge / tiny / 32.0), (1.0, huge / 8.0)];
+    for (scale, stretch) in stretches {
+        for origin in [DVec2::ZERO, offset] {
+            let place = |p: [f64; 2]| DVec2::from(p) * scale + if scale == 1.0 { origin } else { DVec2::ZERO };
+            let scene = Scene::new(walls.map(|wall| wall.map(place))).unwrap();
+            let model = Model::new(scene, Some(place([0.0, 0.0]))).unwrap();
+            let points: Vec<_> = ring.iter().cycle().take(40).map(|&p| place(p.map(|c| c * stretch))).collect();
+            let trace = settle(&model, &Trace { id: 0, points });
+            for mut engine in [fast(&device, &model), fast(&device, &model).keep_all()] {
+                let records = run(&mut engine, std::slice::from_ref(&trace));
+                is_sound(&model, &trace, &records[0]);
+            }
+        }
+    }
+}
+
+#[test]
+fn no_trace_depends_on_the_others() {
+    let device = software();
+    let plan = Model::new(floor_plan(), None).unwrap();
+    let walls = Model::new(random_walls(200, 4), None).unwrap();
+    for (model, step) in [(&plan, 0.3), (&walls, 0.03)] {
+        let traces: Vec<_> =
+            walks(model, Walker { step, steps: 150, seed: 9 }, 90).iter().map(|t| settle(model, t)).collect();
+        let alone: Vec<_> =
+            traces.iter().map(|t| run(&mut fast(&device, model), std::slice::from_ref(t)).remove(0)).collect();
+        assert!(alone.iter().any(|record| record.events.len() > 9));
+        let mut backwards: Vec<_> = traces.clone();
+        backwards.reverse();
+        for queries in [1, 7, 1 << 13] {
+            let tuning = Tuning { queries, workgroup: 64 };
+            let mut engine = FastGpu::with(device.clone(), model, tuning, DECIDE_WGSL).unwrap();
+            assert_eq!(run(&mut engine, &traces), alone, "{queries} queries a round");
+            let mut records = run(&mut engine, &backwards);
+            records.reverse();
+            assert_eq!(records, alone, "{queries} queries a round, backwards");
+        }
+    }
+}
+
+/// Questions whose numbers are whole and small, so that no product is rounded, however a device fuses: coordinates to 40 put
+/// many points on the rays of vertices.
+fn whole_questions() -> impl Strategy<Value = (Vec<Vec2>, Vec<(Question, Vec<Vec2>)>)> {
+    let point = |size: i8| [-size..=size, -size..=size].prop_map(|[x, y]| Vec2::new(x.into(), y.into()));
+    let sign = prop_oneof![Just(-1.0f32), Just(0.0), Just(1.0)];
+    let wedge = [point(1), point(1), point(1)];
+    let turn = (point(9), sign.clone(), any::<bool>(), prop::option::of(0..60u32));
+    let points = prop::collection::vec(point(40), 2..=MOST_LEGS + 1);
+    let question = (wedge, 0..99u8, point(2), turn, (point(9), sign), 0..60u32, points);
+    let question = question.prop_map(
+        |([right, left, ahead], reach, origin, (start, dir, wrapped, barred), (way, back), count, points)| {
+            let (barred, legs) = (barred.unwrap_or(NOTHING), points.len() as u32 - 1);
+            let (wrapped, reach) = (wrapped.into(), reach.into());
+            (
+                Question {
+                    right,
+                    left,
+                    ahead,
+                    origin,
+                    start,
+                    way,
+                    reach,
+                    dir,
+                    back,
+                    wrapped,
+                    count,
+                    legs,
+                    barred,
+                    ..Question::default()
+                },
+                points,
+            )
+        },
+    );
+    (prop::collection::vec(point(30), 60), prop::collection::vec(question, 1..40))
+}
+
+/// What the device makes of questions about vertices from place `first` on.
+fn ask(pass: &mut GpuPass<Deciding>, key: u32, vertices: &[Vec2], asked: &[(Question, Vec<Vec2>)]) -> Vec<Answer> {
+    pass.start_round();
+    let first = pass.place(key, vertices.len(), || vertices.iter().map(Vec2::to_array).collect()).unwrap();
+    let mut points: Vec<[f32; 2]> = vec![];
+    let mut questions = vec![];
+    for (question, own) in asked {
+        questions.push(Question { first, points: points.len() as u32, ..*question });
+        points.extend(own.iter().map(Vec2::to_array));
+    }
+    pass.send(0, &questions, &points);
+    let mut answers = vec![Answer::default(); asked.len()];
+    pass.collect(0, &mut answers).unwrap();
+    answers
+}
+
+/// Whether the device with this shader and the twin answer alike; in how many ways events are met is counted.
+fn twins_agree(device: &Device, wgsl: &str, cases: u32) -> Result<[usize; 3], String> {
+    let tuning = Tuning { queries: 64, workgroup: 64 };
+    let mut pass = GpuPass::<Deciding>::new(device.clone(), 1, 60, LISTS_BUDGET, tuning, wgsl).unwrap();
+    let config = ProptestConfig { cases, failure_persistence: None, max_shrink_iters: 0, ..ProptestConfig::default() };
+    let counts = std::cell::RefCell::new(([0; 3], &mut pass));
+    let result = TestRunner::new(config).run(&whole_questions(), |(vertices, asked)| {
+        let (met, pass) = &mut *counts.borrow_mut();
+        pass.forget();
+        for (answer, (question, points)) in ask(pass, 0, &vertices, &asked).iter().zip(&asked) {
+            let twin = decide(question, points, &vertices[..question.count as usize]);
+            prop_assert_eq!(answer, &twin);
+            met[match twin.leg {
+                NOTHING => 0,
+                _ if twin.place == tautline::fast::UNWRAP => 1,
+                _ => 2,
+            }] += 1;
+        }
+        Ok(())
+    });
+    let (met, _) = counts.into_inner();
+    result.map(|()| met).map_err(|error| error.to_string())
+}
+
+#[test]
+fn the_shader_and_its_twin_answer_alike() {
+    let met = twins_agree(&software(), DECIDE_WGSL, 300).unwrap();
+    assert!(met.iter().all(|&count| count > 100), "{met:?}");
+}
+
+/// Each changes one operator or number of the shader.
+const CHANGES: [(&str, &str); 24] = [
+    ("u.x * v.y - u.y * v.x", "u.x * v.y + u.y * v.x"),
+    ("u.x * v.x + u.y * v.y", "u.x * v.x - u.y * v.y"),
+    ("min(sides, question.reach", "max(sides, question.reach"),
+    ("cross_of(way, a) >= 0.0", "cross_of(way, a) > 0.0"),
+    ("is_left(p, a) == after", "is_left(p, a) != after"),
+    ("select(-1.0, 1.0, after)", "select(1.0, -1.0, after)"),
+    ("select(0.0, dir, cross_of(a - p, b - p) * dir >= 0.0)", "select(0.0, dir, cross_of(a - p, b - p) * dir > 0.0)"),
+    ("question.wrapped == 1u", "question.wrapped == 0u"),
+    ("turn > 0.0 ||", "turn < 0.0 ||"),
+    ("(dir > 0.0) && cross_of(a - p, b - p) * dir >= 0.0", "(dir > 0.0) && cross_of(a - p, b - p) * dir > 0.0"),
+    ("number != question.barred", "number == question.barred"),
+    ("order > 0.0 ||", "order < 0.0 ||"),
+    ("dot_of(p, q - p) > 0.0", "dot_of(p, q - p) < 0.0"),
+    ("question.first + numbers[i], dir", "numbers[i], dir + 0.5"),
+    ("dot_of(question.way, b) > 0.0, was_past", "dot_of(question.way, b) < 0.0, was_past"),
+    ("let crosses = cross_of(a, b) * question.back >= 0.0", "let crosses = cross_of(a, b) * question.back > 0.0"),
+    ("cross_of(question.start, question.way) * question.back > 0.0", "cross_of(question.start, question.way) > 0.0"),
+    ("question.dir == question.back", "question.dir != question.back"),
+    ("met.at) * question.back > 0.0", "met.at) * question.back >= 0.0"),
+    ("question.back != 0.0 &&", "question.back == 0.0 &&"),
+    ("place + 1u < end", "place + 2u < end"),
+    ("place += 2u", "place += 4u"),
+    ("count > KEPT - 2u", "count > KEPT"),
+    ("        a = b;", "        a = b + vec2<f32>(1.0, 0.0);"),
+];
+
+#[test]
+fn a_shader_with_one_operator_changed_does_not_answer_like_the_twin() {
+    let device = software();
+    for (right, wrong) in CHANGES {
+        assert_eq!(DECIDE_WGSL.matches(right).count(), 1, "{right:?} stands in the shader once");
+        let changed = DECIDE_WGSL.replace(right, wrong);
+        assert!(twins_agree(&device, &changed, 300).is_err(), "{wrong:?} in the place of {right:?} went unnoticed");
+    }
+}
+
+#[test]
+fn lists_of_several_pages_are_decided_over_all_of_them() {
+    let model = posts();
+    let device = software();
+    let traces: Vec<_> =
+        walks(&model, Walker { step: 0.8, steps: 60, seed: 2 }, 12).iter().map(|t| settle(&model, t)).collect();
+    let vertices: Vec<Vec2> =
+        model.vertices().iter().map(|v| ((*v * 8.0).round() / 8.0 - DVec2::splat(50.0)).as_vec2()).collect();
+    let tuning = Tuning { queries: 64, workgroup: 64 };
+    let mut pass = GpuPass::new(device.clone(), 1, vertices.len(), LISTS_BUDGET, tuning, DECIDE_WGSL).unwrap();
+    let asked: Vec<_> = (0..40u32)
+        .map(|i| {
+            let at = |k: u32| Vec2::new(((i * 37 + k * 11) % 97) as f32 - 48.0, ((i * 53 + k * 29) % 89) as f32 - 44.0);
+            let points: Vec<_> = (0..5).map(at).collect();
+            let count = 500 * i + 1;
+            (Question { reach: 1.0, legs: 4, count, barred: NOTHING, ..Question::default() }, points)
+        })
+        .collect();
+    let answers = ask(&mut pass, 0, &vertices, &asked);
+    for (answer, (question, points)) in answers.iter().zip(&asked) {
+        assert_eq!(*answer, decide(question, points, &vertices[..question.count as usize]));
+    }
+    // And through the engine, which then asks about all of them.
+    for (trace, record) in traces.iter().zip(run(&mut fast(&device, &model).keep_all(), &traces)) {
+        is_sound(&model, trace, &record);
+    }
+}
+
+/// Where the shader writes its answer down.
+const LAST: &str =
+    "answers[lane] = try_legs(question, count, last <= page.first + PAGE && is_pivot_in_wedge(question), met);";
+
+#[test]
+fn a_fast_engine_stops_and_takes_nothing_for_an_answer() {
+    let model = Model::new(floor_plan(), None).unwrap();
+    let device = software();
+    let traces = [settle(&model, &walks(&model, Walker { step: 0.3, steps: 50, seed: 3 }, 1)[0])];
+    let job = Job::new();
+    job.stop();
+    assert!(fast(&device, &model).evaluate(&traces, &job).is_err());
+    assert_eq!(run(&mut fast(&device, &model), &[]), []);
+    assert_eq!(DECIDE_WGSL.matches(LAST).count(), 1);
+    // A device that unwraps what is not there is found out, and does not hang.
+    let broken = DECIDE_WGSL.replace(LAST, "answers[lane] = Answer(0u, UNWRAP, 1.0, 0u, met.at);");
+    let tuning = Tuning { queries: 8, workgroup: 64 };
+    let error = FastGpu::with(device.clone(), &model, tuning, &broken).unwrap().evaluate(&traces, &Job::new());
+    assert!(error.unwrap_err().to_string().contains("it named a vertex that it was not given"));
+    // Nor does one that names the same vertex again and again.
+    let broken = DECIDE_WGSL.replace(LAST, "answers[lane] = Answer(0u, question.first, 1.0, 0u, met.at);");
+    let records =
+        FastGpu::with(device.clone(), &model, tuning, &broken).unwrap().evaluate(&traces, &Job::new()).unwrap();
+    is_sound(&model, &traces[0], &records[0]);
+    // The engines say what they are.
+    let precisions = [fast(&device, &model).precision(), Gpu::new(device, &model).unwrap().precision()];
+    assert_eq!(precisions.map(|p| p.unwrap().name()), ["fast", "certified"]);
+}
