@@ -112,11 +112,19 @@ impl Study {
             None => None,
             Some(path) => {
                 let mut reader = TraceReader::open(path).map_err(|e| PlanError::new(e.to_string()))?;
-                skip(&mut reader, first)?;
+                let there = skip(&mut reader, first)?;
+                if there < first {
+                    return Err(self.too_few(there));
+                }
                 Some(reader)
             }
         };
         Ok(Source { study: self, reader, next: first })
+    }
+
+    /// What is said of a file of so many traces.
+    fn too_few(&self, there: u64) -> PlanError {
+        PlanError::new(format!("run.traces: {} are asked for, but the file holds {there}", self.plan.run.traces))
     }
 }
 
@@ -135,7 +143,10 @@ impl Source<'_> {
             let trace = |number| walks[self.study.setting.anchor(number)].trace(number);
             return Ok(numbers.into_par_iter().map(trace).collect());
         };
-        skip(reader, numbers.start - self.next)?;
+        let there = self.next + skip(reader, numbers.start - self.next)?;
+        if there < numbers.start {
+            return Err(self.study.too_few(there));
+        }
         self.next = numbers.end;
         let model = &self.study.setting.models[0];
         let mut settled: Vec<SettledTrace> = Vec::new();
@@ -143,8 +154,7 @@ impl Source<'_> {
         while settled.len() < count {
             let more = reader.next_batch(count - settled.len(), 1 << 22).map_err(|e| PlanError::new(e.to_string()))?;
             let Some(more) = more else {
-                let asked = self.study.plan.run.traces;
-                return Err(PlanError::new(format!("run.traces: {asked} are asked for, but the file holds fewer")));
+                return Err(self.study.too_few(there + settled.len() as u64));
             };
             settled.par_extend(more.into_par_iter().map(|trace| settle_owned(model, trace)));
         }
@@ -155,15 +165,17 @@ impl Source<'_> {
     }
 }
 
-fn skip(reader: &mut TraceReader, mut count: u64) -> Result<(), PlanError> {
-    while count > 0 {
-        let most = count.min(1 << 16) as usize;
+/// Passes over so many traces, or all that there are; tells how many.
+fn skip(reader: &mut TraceReader, count: u64) -> Result<u64, PlanError> {
+    let mut skipped = 0;
+    while skipped < count {
+        let most = (count - skipped).min(1 << 16) as usize;
         match reader.next_batch(most, 1 << 22).map_err(|e| PlanError::new(e.to_string()))? {
-            Some(skipped) => count -= skipped.len() as u64,
-            None => return Ok(()),
+            Some(more) => skipped += more.len() as u64,
+            None => break,
         }
     }
-    Ok(())
+    Ok(skipped)
 }
 
 /// The scene with each of the plan's anchors.

@@ -267,6 +267,7 @@ fn given_traces_are_studied_too() {
     let mean = json(&folder, "a/summary.json")["scalars"][0]["mean"]["value"].as_f64().unwrap();
     assert!((report["length"]["mean"].as_f64().unwrap() - mean).abs() < 1e-9 * mean);
     folder.refused(2, "study run g.toml --out c --traces 701", &["the file holds 700"]);
+    folder.refused(2, "study run g.toml --out d --traces 9000 --shard 3/4", &["the file holds 700"]);
 }
 
 #[test]
