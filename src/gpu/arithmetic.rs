@@ -146,7 +146,7 @@ fn samples() -> Vec<Sample> {
         let close = draw() * 2f64.powi(-(i as i32 % 24));
         let offset = (close - normal.as_dvec2().dot(p.as_dvec2())) as f32;
         let sample = Sample { normal, p, offset, unused: [0.0; 3] };
-        if i % 16 > 0 {
+        if !i.is_multiple_of(16) {
             return sample;
         }
         let (tiny, less) = (2f32.powi(-100), 2f32.powi(-30));

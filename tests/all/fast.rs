@@ -166,6 +166,29 @@ fn records_are_sound_at_the_ends_of_the_range() {
     }
 }
 
+/// Round a box along its walls, from corner to corner, both ways, and back: points that stand on corners count as standing off
+/// them, on the side that the exact update has them on.
+#[test]
+fn points_on_corners_are_taken_off_them() {
+    let device = software();
+    let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]].map(DVec2::from);
+    let walls = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]);
+    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(-2.0, -1.0))).unwrap();
+    let way = |id, order: &[usize]| {
+        let mut points = vec![model.anchor(), DVec2::new(-0.5, -0.25)];
+        points.extend(order.iter().map(|&i| corners[i]));
+        points.push(DVec2::new(-0.75, if order.last() == Some(&3) { 3.5 } else { -0.5 }));
+        settle(&model, &Trace { id, points })
+    };
+    let traces =
+        [way(0, &[0, 1, 2, 3]), way(1, &[0, 3, 2, 1, 0]), way(2, &[0, 1, 2, 1, 0]), way(3, &[0, 1, 2, 3, 0, 1, 0])];
+    assert!(traces.iter().all(|trace| !trace.is_plain() && trace.violation().is_none()));
+    let truth = run(&mut Reference::new(&model), &traces);
+    assert!(truth[0].depth >= 2 && truth[3].depth >= 3, "{} and {}", truth[0].depth, truth[3].depth);
+    let ropes = |records: &[TraceRecord]| records.iter().map(|record| record.wraps.clone()).collect::<Vec<_>>();
+    assert_eq!(ropes(&run(&mut fast(&device, &model), &traces)), ropes(&truth));
+}
+
 #[test]
 fn no_trace_depends_on_the_others() {
     let device = software();
