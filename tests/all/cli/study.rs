@@ -236,7 +236,7 @@ fn the_precision_belongs_to_a_study() {
     folder.refused(2, "study resume a --engine cpu", &["precision fast is one of the engine gpu"]);
     folder.refused(2, "study run f.toml --out no --engine cpu", &["precision fast is one of the engine gpu"]);
     assert!(!folder.path("no").exists());
-    folder.write("wrong.toml", &text.replace("\"fast\"", "\"exact\""));
+    folder.write("wrong.toml", text.replace("\"fast\"", "\"exact\""));
     folder.refused(2, "study run wrong.toml --out no", &["line ", "exact", "certified", "fast"]);
 }
 
