@@ -12,7 +12,7 @@ use super::kernel::{Kernel, Sweeping};
 use super::pages::{Pages, pages_of};
 use super::{Device, GpuError, Tuning};
 
-/// How many tests a round has at most, if that leaves work for one workgroup: 2^32, some seconds on the slowest adapter
+/// How many tests a round has at most, one a vertex and point, if that leaves work for one workgroup: 2^32, some seconds on the slowest adapter
 /// known (0.7e9 tests a second), well within the patience of drivers that watch for hanging kernels on real GPUs.
 const TESTS_A_ROUND: usize = 1 << 32;
 
@@ -93,7 +93,7 @@ impl<K: Kernel> GpuPass<K> {
             .queries
             .min(limits.max_storage_buffer_binding_size as usize / bytes_a_query::<K>())
             .min(limits.max_compute_workgroups_per_dimension as usize * workgroup as usize)
-            .min(TESTS_A_ROUND / largest.max(1))
+            .min(TESTS_A_ROUND / (largest.max(1) * K::POINTS.max(1)))
             .max(workgroup as usize)
             .min(tuning.queries.max(1));
         let mut entries = vec![

@@ -5,6 +5,7 @@ mod batch;
 mod built_in;
 mod cli;
 mod conservative;
+mod decide;
 mod drawings;
 mod examples;
 mod fast;
