@@ -121,10 +121,20 @@ impl Plan {
         }
         if self.blocks() > MOST_BLOCKS {
             let least = run.traces.div_ceil(MOST_BLOCKS);
-            return err(format!("run.block: {} traces need blocks of at least {least}", run.traces));
+            let most = MOST_BLOCKS * u64::from(u32::MAX);
+            return err(match u32::try_from(least) {
+                Ok(least) => format!("run.block: {} traces need blocks of at least {least}", run.traces),
+                Err(_) => format!("run.traces: {} are too many; at most {most} will do", run.traces),
+            });
         }
         if let Some(steps) = self.walk.steps() {
-            let most = (MOST_POINTS / (u64::from(steps) + 1)).max(1);
+            let most = MOST_POINTS / (u64::from(steps) + 1);
+            if most == 0 {
+                let most = MOST_POINTS - 1;
+                return err(format!(
+                    "walk.steps: a trace of {steps} steps takes too much memory; at most {most} will do"
+                ));
+            }
             if u64::from(run.block) > most {
                 return err(format!(
                     "run.block: blocks of {} traces of {steps} steps take too much memory; at most {most} will do",

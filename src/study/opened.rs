@@ -56,6 +56,13 @@ impl Study {
         };
         let identity = identity(&plan, &models, given.as_deref())?;
         let setting = Setting::new(&plan, models);
+        let least = setting.unit;
+        if setting.bin < least {
+            return Err(PlanError::new(format!(
+                "tallies.bin: {} is too narrow for lengths in this scene; give at least {least:e}, or 0 for a usual width",
+                setting.bin
+            )));
+        }
         Ok(Study { plan, setting, walks, given, identity })
     }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::mpsc::sync_channel;
 use std::thread;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
@@ -57,6 +57,19 @@ struct Group {
     drawn: f64,
 }
 
+/// Why there are no more traces.
+enum DrawError {
+    Plan(PlanError),
+    /// The job was stopped.
+    Stopped,
+}
+
+impl From<PlanError> for DrawError {
+    fn from(error: PlanError) -> Self {
+        DrawError::Plan(error)
+    }
+}
+
 /// Goes on with `state` until the study, or the shard, is done or the job is stopped.
 ///
 /// `engines` has one for each of the study's [`models`](Study::models), in their order. After each group of blocks `after`
@@ -88,19 +101,18 @@ pub fn run<E: Send>(
     let (shard, first) = (state.shard, state.done);
     let mut total = state.tallies.scalars();
     thread::scope(|scope| {
-        let (ready, groups) = sync_channel::<Result<Group, PlanError>>(0);
+        let (ready, groups) = sync_channel::<Result<Group, DrawError>>(0);
         scope.spawn(move || {
             let mut source = match study.source(study.block(shard.block(first)).start) {
                 Ok(source) => source,
-                Err(error) => return drop(ready.send(Err(error))),
+                Err(error) => return drop(ready.send(Err(error.into()))),
             };
-            for start in (first..all).step_by(size as usize) {
-                let blocks = start..(start + size).min(all);
-                let clock = Instant::now();
-                let group = draw(&mut source, blocks.clone().map(|b| study.block(shard.block(b))))
-                    .map(|(traces, sizes)| Group { blocks, traces, sizes, drawn: clock.elapsed().as_secs_f64() });
-                let failed = group.is_err();
-                if ready.send(group).is_err() || failed {
+            let mut start = first;
+            while start < all {
+                let numbers = (start..(start + size).min(all)).map(|b| study.block(shard.block(b)));
+                let group = draw(&mut source, start, numbers, job);
+                start = group.as_ref().map_or(all, |group| group.blocks.end);
+                if ready.send(group).is_err() {
                     return;
                 }
             }
@@ -108,7 +120,11 @@ pub fn run<E: Send>(
         let mut clock = Instant::now();
         let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
         for group in groups {
-            let Group { blocks, mut traces, sizes, drawn } = group?;
+            let Group { blocks, mut traces, sizes, drawn } = match group {
+                Ok(group) => group,
+                Err(DrawError::Plan(error)) => return Err(error.into()),
+                Err(DrawError::Stopped) => return Err(EngineError::Stopped.into()),
+            };
             let waited = lap();
             let records = evaluate(study, engines, &mut traces, job)?;
             let evaluated = lap();
@@ -154,18 +170,30 @@ fn group_size(study: &Study, batch: usize) -> u64 {
     (batch as u64).div_ceil(block).min(POINTS / (block * (steps + 1))).max(1)
 }
 
-/// The traces with these numbers, and how many each range has.
+/// After that time a group is closed though there is room for more, so that a study is stopped and saved in time.
+const LONGEST: Duration = Duration::from_secs(1);
+
+/// The traces of the blocks from number `first` on whose traces have these `numbers`, as many as are drawn in time.
 fn draw(
     source: &mut Source<'_>,
-    blocks: impl Iterator<Item = Range<u64>>,
-) -> Result<(Vec<SettledTrace>, Vec<usize>), PlanError> {
-    let (mut traces, mut sizes) = (Vec::new(), Vec::new());
-    for numbers in blocks {
+    first: u64,
+    numbers: impl Iterator<Item = Range<u64>>,
+    job: &Job,
+) -> Result<Group, DrawError> {
+    let clock = Instant::now();
+    let mut group = Group { blocks: first..first, traces: Vec::new(), sizes: Vec::new(), drawn: 0.0 };
+    for numbers in numbers {
+        job.go_on().map_err(|_| DrawError::Stopped)?;
         let block = source.take(numbers)?;
-        sizes.push(block.len());
-        traces.extend(block);
+        group.sizes.push(block.len());
+        group.traces.extend(block);
+        group.blocks.end += 1;
+        if clock.elapsed() > LONGEST {
+            break;
+        }
     }
-    Ok((traces, sizes))
+    group.drawn = clock.elapsed().as_secs_f64();
+    Ok(group)
 }
 
 /// The records of all traces, in their order. Each is evaluated by the engine of its anchor.

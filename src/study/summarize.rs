@@ -50,17 +50,19 @@ fn scalars(confidence: &Confidence, moments: &[Moments], counts: &Counts) -> Vec
     // The least number below or at which that share of them lies.
     let rank = |share: f64| ((share * traces as f64).ceil() as u64).max(1);
     let quantile = |i: usize, share: f64| match i {
-        0 | 1 => counts.lengths[i].of_rank(rank(share)),
-        _ => of_rank(&counts.values[i - 2], rank(share)).unwrap_or(0) as f64,
+        // A length's class is known, and that no length is beyond the extremes.
+        0 | 1 => counts.lengths[i].of_rank(rank(share)).map(|x| x.clamp(moments[i].min, moments[i].max)),
+        _ => [of_rank(&counts.values[i - 2], rank(share)).unwrap_or(0) as f64; 2],
     };
     let scalar = |(i, (name, moments)): (usize, (&&str, &Moments))| {
         let estimate = |share| {
             let [low, high] = confidence.ranks(share, traces);
+            let [value, above] = quantile(i, share);
             Estimate {
-                value: quantile(i, share),
+                value: value + (above - value) / 2.0,
                 error: None,
-                low: Some(quantile(i, low)),
-                high: Some(quantile(i, high)),
+                low: Some(quantile(i, low)[0]),
+                high: Some(quantile(i, high)[1]),
             }
         };
         Scalar {

@@ -43,6 +43,18 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             args.trace
         )));
     }
+    for (option, path) in [("--events", &args.events), ("--draw", &args.draw)] {
+        let own = |path: &std::path::Path| {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            path.exists() && folder.unwrap_or(".".as_ref()).canonicalize().ok() == args.folder.canonicalize().ok()
+        };
+        if let Some(path) = path.as_deref().filter(|path| own(path)) {
+            let shown = path.display();
+            return Err(Failure::input(anyhow!(
+                "{option}: {shown} is one of the study's own files; give another name"
+            )));
+        }
+    }
     let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
     args.events.as_deref().map(check_output).transpose()?;
     let target = args.draw.as_deref().map(|path| Target::new(path, &args.look)).transpose()?;

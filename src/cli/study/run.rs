@@ -90,6 +90,9 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         )));
     }
     let study = Study::open(plan, &base)?;
+    if is_stuck(&study)? {
+        eprintln!("note: the first traces stay where they start: is no step of the walk possible in this scene?");
+    }
     if let Some(file) = &study.plan().scene.file {
         note(file, study.models()[0].scene());
     }
@@ -192,14 +195,18 @@ fn proceed(
 
 /// The engines, one for each anchor, and in words what they run on.
 ///
-/// The engine `note` is refused: its ropes are wrong on purpose, and an answer does not tell what computed it.
+/// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on purpose, and
+/// `funnel` knows no contacts passed straight.
 fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn Engine + 's>>, String), Failure> {
     let mut on = String::new();
     let mut engines = Vec::new();
     for model in study.models() {
         let (engine, place) = args.open_for(study.plan().run.precision, model)?;
-        if engine.name() == "note" {
-            return Err(Failure::input(anyhow!("--engine: studies are exact, which note is not; give another engine")));
+        if ["note", "funnel"].contains(&engine.name()) {
+            return Err(Failure::input(anyhow!(
+                "--engine: {} does not count the same events as the other engines; give one of those for a study",
+                engine.name()
+            )));
         }
         engines.push(engine);
         on = place;
@@ -288,6 +295,19 @@ fn draw(folder: &Folder, summary: &Summary, study: &Study, run: &serde_json::Val
     }
     let shown: Vec<_> = pictures.into_iter().map(|(_, title, svg)| (title, svg)).collect();
     folder.write("report.html", picture::page(summary, &shown, Some(run)).as_bytes())
+}
+
+/// Whether nothing moves in the first traces drawn, as where steps are far longer than the scene.
+fn is_stuck(study: &Study) -> Result<bool, Failure> {
+    let few = if study.plan().is_given() { 0 } else { study.plan().run.traces.min(5) };
+    for number in 0..few {
+        // The first point may be the anchor.
+        let trace = study.trace(number)?;
+        if trace.points().windows(2).skip(1).any(|p| p[0] != p[1]) {
+            return Ok(false);
+        }
+    }
+    Ok(few > 0)
 }
 
 /// Does the first blocks, to say what all of them would cost.

@@ -17,6 +17,8 @@ pub(super) struct Held {
     length: f64,
     /// After which step it was wrapped.
     since: u64,
+    /// Whether the rope bent round the same wall end before, and still does.
+    again: bool,
 }
 
 /// Steps between which the rope bends round the same wall ends.
@@ -30,7 +32,8 @@ pub(super) struct Span {
 }
 
 /// Calls `span` for each run of steps without an event, in order, and `left` for each contact with how many steps it
-/// lasted, when it goes or at the end. O(events).
+/// lasted, when it goes or at the end; 0 steps for a contact with a wall end that the rope had a contact with all the while.
+/// O(events), and contacts for those with another wall end than before.
 ///
 /// `steps` is the number of the last step; `vertices` are the scene's.
 pub(super) fn follow(
@@ -54,11 +57,13 @@ pub(super) fn follow(
             EventKind::Wrap => {
                 let at = vertices[event.vertex as usize];
                 let length = length + pivot.distance(at);
-                held.push(Held { vertex: event.vertex, at, length, since: step });
+                // Those of a winding rope come again soon.
+                let again = held.iter().rev().any(|h| h.vertex == event.vertex);
+                held.push(Held { vertex: event.vertex, at, length, since: step, again });
             }
             EventKind::Unwrap => {
                 if let Some(gone) = held.pop() {
-                    left(gone, step - gone.since);
+                    left(gone, if gone.again { 0 } else { step - gone.since });
                 }
             }
         }
@@ -66,7 +71,7 @@ pub(super) fn follow(
     let (pivot, length) = held.last().map_or((anchor, 0.0), |h| (h.at, h.length));
     span(Span { steps: start..steps + 1, pivot, length });
     for gone in held {
-        left(gone, steps + 1 - gone.since);
+        left(gone, if gone.again { 0 } else { steps + 1 - gone.since });
     }
 }
 

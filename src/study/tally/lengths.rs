@@ -23,13 +23,10 @@ impl Lengths {
         other.0.into_iter().for_each(|(class, count)| *self.0.entry(class).or_default() += count);
     }
 
-    /// The middle of the class in which the length of that rank lies, ranks counted from 1: within 0.4 % of it.
-    pub(crate) fn of_rank(&self, rank: u64) -> f64 {
-        let middle = |class: u32| {
-            let [low, high] = [0, 1].map(|next| f64::from_bits(u64::from(class + next) << SHIFT));
-            if class == 0 { 0.0 } else { low + (high - low) / 2.0 }
-        };
-        of_rank(&self.0, rank).map_or(0.0, middle)
+    /// The least and the greatest length of the class in which that of this rank lies, ranks counted from 1.
+    pub(crate) fn of_rank(&self, rank: u64) -> [f64; 2] {
+        let ends = |class: u32| [0, 1].map(|next| f64::from_bits(u64::from(class + next) << SHIFT));
+        of_rank(&self.0, rank).map_or([0.0; 2], |class| if class == 0 { [0.0; 2] } else { ends(class) })
     }
 }
 
@@ -59,13 +56,13 @@ mod tests {
             assert_eq!(one, two);
             all.sort_by(f64::total_cmp);
             for rank in [1, 10, 500, 999, 1000] {
-                let (told, truth) = (one.of_rank(rank), all[rank as usize - 1]);
-                assert!((told - truth).abs() <= truth / 256.0, "{told} for {truth}");
+                let ([low, high], truth) = (one.of_rank(rank), all[rank as usize - 1]);
+                assert!(low <= truth && truth <= high && high - low <= truth / 128.0, "{low} to {high} for {truth}");
             }
         }
         let mut none = Lengths::default();
-        assert_eq!(none.of_rank(1), 0.0);
+        assert_eq!(none.of_rank(1), [0.0; 2]);
         none.add(0.0);
-        assert_eq!(none.of_rank(1), 0.0);
+        assert_eq!(none.of_rank(1), [0.0; 2]);
     }
 }

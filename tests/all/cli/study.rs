@@ -294,3 +294,46 @@ fn faults_in_a_study_are_named() {
     folder.done("study run new.toml --traces 100 --out b");
     assert!(folder.done("study schema").stdout.contains("\"walk\""));
 }
+
+#[test]
+fn a_rope_that_winds_is_about_a_wall_end_no_more_than_always() {
+    let folder = Folder::new();
+    folder.write("speck.wkt", "LINESTRING (-0.1 0, 0.1 0)\nPOINT (-3 0)\n");
+    let points = (0..=80).map(|i| glam::DVec2::from_angle(std::f64::consts::PI * (1.0 + f64::from(i) / 4.0)) * 2.0);
+    let rows: String = points.map(|p| format!("0,{},{}\n", p.x, p.y)).collect();
+    folder.write("t.csv", format!("trace,x,y\n{rows}"));
+    folder.write(
+        "g.toml",
+        "[scene]\nfile = \"speck.wkt\"\n[walk]\nkind = \"given\"\nfile = \"t.csv\"\n[run]\ntraces = 1\n",
+    );
+    folder.done("study run g.toml --out a");
+    let summary = json(&folder, "a/summary.json");
+    assert!(summary["scalars"][2]["max"].as_f64().unwrap() > 15.0, "the rope winds");
+    for contact in summary["contacts"].as_array().unwrap() {
+        let share = contact["share"]["value"].as_f64().unwrap();
+        assert!(share > 0.5 && share < 1.0, "{contact}");
+    }
+    folder.done("study replay a --trace 0 --events e.csv");
+    folder.refused(2, "study replay a --trace 0 --draw a/survival.svg --events a/summary.json", &["a/summary.json"]);
+}
+
+#[test]
+fn studies_that_would_mislead_or_burst_are_refused() {
+    let folder = study();
+    for engine in ["note", "funnel"] {
+        folder.refused(2, &format!("study run s.toml --engine {engine} --dry-run"), &[engine, "same events"]);
+    }
+    for (from, to, parts) in [
+        ("steps = ", "steps = 2147483646 # ", &["walk.steps", "memory"][..]),
+        ("block = ", "block = 4294967295 # ", &["run.block", "memory"]),
+        ("traces = ", "traces = 9223372036854775807 # ", &["run.traces", "at most"]),
+        ("[tallies]", "[tallies]\nbin = 1e-300", &["tallies.bin", "narrow"]),
+    ] {
+        assert!(STUDY.contains(from), "{from}");
+        folder.write("burst.toml", STUDY.replacen(from, to, 1));
+        folder.refused(2, "study run burst.toml --out b", parts);
+        assert!(!folder.path("b").exists());
+    }
+    folder.write("stuck.toml", STUDY.replacen("step = ", "step = 1e9 # ", 1));
+    assert!(folder.done("study run stuck.toml --out c --traces 10").stderr.contains("no step of the walk possible"));
+}
