@@ -57,19 +57,6 @@ struct Group {
     drawn: f64,
 }
 
-/// Why there are no more traces.
-enum DrawError {
-    Plan(PlanError),
-    /// The job was stopped.
-    Stopped,
-}
-
-impl From<PlanError> for DrawError {
-    fn from(error: PlanError) -> Self {
-        DrawError::Plan(error)
-    }
-}
-
 /// Goes on with `state` until the study, or the shard, is done or the job is stopped.
 ///
 /// `engines` has one for each of the study's [`models`](Study::models), in their order. After each group of blocks `after`
@@ -101,7 +88,7 @@ pub fn run<E: Send>(
     let (shard, first) = (state.shard, state.done);
     let mut total = state.tallies.scalars();
     thread::scope(|scope| {
-        let (ready, groups) = sync_channel::<Result<Group, DrawError>>(0);
+        let (ready, groups) = sync_channel::<Result<Group, RunError<E>>>(0);
         scope.spawn(move || {
             let mut source = match study.source(study.block(shard.block(first)).start) {
                 Ok(source) => source,
@@ -120,11 +107,7 @@ pub fn run<E: Send>(
         let mut clock = Instant::now();
         let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
         for group in groups {
-            let Group { blocks, mut traces, sizes, drawn } = match group {
-                Ok(group) => group,
-                Err(DrawError::Plan(error)) => return Err(error.into()),
-                Err(DrawError::Stopped) => return Err(EngineError::Stopped.into()),
-            };
+            let Group { blocks, mut traces, sizes, drawn } = group?;
             let waited = lap();
             let records = evaluate(study, engines, &mut traces, job)?;
             let evaluated = lap();
@@ -174,16 +157,16 @@ fn group_size(study: &Study, batch: usize) -> u64 {
 const LONGEST: Duration = Duration::from_secs(1);
 
 /// The traces of the blocks from number `first` on whose traces have these `numbers`, as many as are drawn in time.
-fn draw(
+fn draw<E>(
     source: &mut Source<'_>,
     first: u64,
     numbers: impl Iterator<Item = Range<u64>>,
     job: &Job,
-) -> Result<Group, DrawError> {
+) -> Result<Group, RunError<E>> {
     let clock = Instant::now();
     let mut group = Group { blocks: first..first, traces: Vec::new(), sizes: Vec::new(), drawn: 0.0 };
     for numbers in numbers {
-        job.go_on().map_err(|_| DrawError::Stopped)?;
+        job.go_on()?;
         let block = source.take(numbers)?;
         group.sizes.push(block.len());
         group.traces.extend(block);

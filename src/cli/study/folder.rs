@@ -35,7 +35,7 @@ pub(super) struct Folder {
 impl Folder {
     /// Makes a folder for a new study.
     pub(super) fn create(path: &Path) -> Result<Self, Failure> {
-        let folder = Folder { path: path.to_owned() };
+        let folder = Folder::at(path);
         if folder.state_path().exists() || folder.study_path().exists() {
             let shown = path.display();
             return Err(Failure::input(anyhow!(

@@ -81,8 +81,6 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     plan.run.traces = args.traces.unwrap_or(plan.run.traces);
     plan.run.seed = args.seed.unwrap_or(plan.run.seed);
     plan.run.precision = args.engine.precision().unwrap_or(plan.run.precision);
-    // What was replaced is checked again.
-    let plan = plan.checked()?;
     args.engine.check(plan.run.precision)?;
     if args.shard.of() > 1 && (plan.until.relative_error.is_some() || plan.until.seconds.is_some()) {
         return Err(Failure::input(anyhow!(
@@ -168,25 +166,23 @@ fn proceed(
             Ok::<(), Failure>(())
         })
     });
-    if let Err(RunError::Caller(failure)) = outcome {
-        // Rows may be lost that the state counts: what was saved before stands.
-        return Err(failure);
-    }
-    parts.as_mut().map_or(Ok(()), Parts::close)?;
-    folder.save(&state)?;
-    let spent = match outcome {
-        Ok(spent) => spent,
+    let ended = match outcome {
+        Ok(spent) => Ok(spent),
         Err(RunError::Engine(EngineError::Stopped)) => {
             let (done, shown) = (state.done(), folder.path().display());
             let all = state.shard().count(study.plan().blocks());
-            return Err(Failure::checkpoint(anyhow!(
+            Err(Failure::checkpoint(anyhow!(
                 "stopped; {done} of {all} blocks are saved: go on with `tautline study resume {shown}`"
-            )));
+            )))
         }
-        Err(RunError::Engine(error)) => return Err(error.into()),
-        Err(RunError::Plan(error)) => return Err(error.into()),
+        Err(RunError::Engine(error)) => Err(error.into()),
+        Err(RunError::Plan(error)) => Err(error.into()),
+        // Rows may be lost that the state counts: what was saved before stands.
         Err(RunError::Caller(failure)) => return Err(failure),
     };
+    parts.as_mut().map_or(Ok(()), Parts::close)?;
+    folder.save(&state)?;
+    let spent = ended?;
     parts.map_or(Ok(()), |parts| parts.finish(state.traces()))?;
     let done = [state.traces() - traces_before, job.steps()];
     let run = cost(&state, name, &on, start.elapsed(), &spent, done);
