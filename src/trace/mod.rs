@@ -14,6 +14,7 @@ mod settle;
 mod settle_truth;
 mod settled;
 mod slide;
+mod stride;
 
 use glam::DVec2;
 

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::corner::Corner;
-use super::settle::{keep_first, violation};
+use super::settle::violation;
 use super::slide::{Stay, choose_sides, incoming, outgoing};
 use super::{SettledTrace, ViolationKind};
 use crate::geometry::Hair;
@@ -34,6 +34,7 @@ pub(super) fn pluck_stays(model: &Model, settled: &mut SettledTrace, stays: &[St
         s = e;
     }
     plucker.insert(stays, chosen);
+    settled.broken.sort();
 }
 
 /// The stays that touch, in order, and those right before and after them; what else a trace does is of no matter.
@@ -99,7 +100,7 @@ impl Plucker<'_> {
         let from = from.map_or(self.model.anchor(), |i| settled.points[i]);
         let found =
             violation(self.model, settled.id, step, ViolationKind::SlipsThrough, wall, [from, settled.points[to]]);
-        keep_first(&mut settled.violation, found);
+        settled.broken.note(found);
     }
 
     /// Writes the hairs down, adding a point where a stay needs two.

@@ -10,6 +10,7 @@ use std::ops::ControlFlow::Continue;
 use glam::DVec2;
 
 use super::pluck::pluck;
+use super::settled::Broken;
 use super::{SettledTrace, Trace, Violation, ViolationKind};
 use crate::geometry::{between, check_points, higher, lower, opposite, orient, same_side};
 use crate::scene::Model;
@@ -74,7 +75,7 @@ pub(crate) fn settle_clear(model: &Model, mut trace: Trace) -> SettledTrace {
 pub(crate) fn first_violation(model: &Model, way: Trace) -> Option<Violation> {
     let layout = Layout::new(model, &way, way.points[0]);
     let points = layout.points(&way.points);
-    layout.settle(model, way.id, points).violation
+    layout.settle(model, way.id, points).broken.first
 }
 
 /// What is to be added to a trace's points, and what they touch.
@@ -84,7 +85,7 @@ pub(super) struct Layout {
     pub(super) inserted: Vec<(u32, DVec2)>,
     /// Indices of the settled points that stand on vertices, ascending.
     pub(super) touching: Vec<u32>,
-    pub(super) violation: Option<Violation>,
+    pub(super) broken: Broken,
 }
 
 impl Layout {
@@ -129,8 +130,7 @@ impl Layout {
         let mut touches = false;
         let _ = model.index().visit::<()>(lower(a, b), higher(a, b), |wall, [u, v]| {
             touches |= b == u || b == v;
-            let mut violate =
-                |kind| keep_first(&mut self.violation, violation(model, trace.id, step, kind, wall, [a, b]));
+            let mut violate = |kind| self.broken.note(violation(model, trace.id, step, kind, wall, [a, b]));
             let (from_a, from_b) = (orient(u, v, a), orient(u, v, b));
             if from_b == 0.0 && between(u, v, b) && model.vertex_at(b).is_none() {
                 violate(ViolationKind::EndsInside);
@@ -178,7 +178,7 @@ impl Layout {
 
     fn settle(self, model: &Model, id: u64, points: Vec<DVec2>) -> SettledTrace {
         let added = self.inserted.iter().map(|p| p.0).collect();
-        let mut settled = SettledTrace::new(id, points, added, self.violation);
+        let mut settled = SettledTrace::new(id, points, added, self.broken);
         if !self.touching.is_empty() {
             pluck(model, &mut settled, &self.touching);
         }
@@ -197,12 +197,4 @@ pub(super) fn violation(
 ) -> Violation {
     let wall = wall as usize;
     Violation { trace, step, kind, wall, ends: model.scene().ends(wall), from, to }
-}
-
-/// Keeps the violation of the earlier step and there that of the wall with the smaller number; of two kinds at one wall
-/// the one found first.
-pub(super) fn keep_first(kept: &mut Option<Violation>, found: Violation) {
-    if kept.is_none_or(|v| (found.step, found.wall) < (v.step, v.wall)) {
-        *kept = Some(found);
-    }
 }

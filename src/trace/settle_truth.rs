@@ -5,14 +5,15 @@ use proptest::prelude::*;
 
 use super::corner::Corner;
 use super::pluck::pluck_stays;
-use super::settle::{keep_first, violation};
+use super::settle::violation;
+use super::settled::Broken;
 use super::slide::Stay;
 use super::{SettledTrace, Trace, ViolationKind, settle, settle_owned};
 use crate::geometry::{between, opposite, orient, same_side};
 use crate::scene::{Model, Scene};
 
 fn settle_plainly(model: &Model, trace: &Trace) -> SettledTrace {
-    let mut settled = SettledTrace::new(trace.id, vec![model.anchor()], vec![], None);
+    let mut settled = SettledTrace::new(trace.id, vec![model.anchor()], vec![], Broken::default());
     settled.points.clear();
     let mut touching = vec![];
     let mut add = |settled: &mut SettledTrace, at: DVec2, ends_step: bool| {
@@ -66,7 +67,7 @@ fn step_plainly(
             continue;
         }
         let mut violate = |kind| {
-            keep_first(&mut settled.violation, violation(model, trace.id, step, kind, wall as u32, [a, b]));
+            settled.broken.note(violation(model, trace.id, step, kind, wall as u32, [a, b]));
         };
         let (from_a, from_b) = (orient(u, v, a), orient(u, v, b));
         if from_b == 0.0 && between(u, v, b) && model.vertex_at(b).is_none() {
@@ -93,6 +94,15 @@ fn step_plainly(
     passed.sort_by(|p, q| along(p).total_cmp(&along(q)));
     passed.dedup();
     passed
+}
+
+/// Whether a step crosses a wall or ends inside one.
+fn breaks(model: &Model, a: DVec2, b: DVec2) -> bool {
+    (0..model.scene().walls().len()).map(|wall| model.scene().ends(wall)).any(|[u, v]| {
+        let (from_a, from_b) = (orient(u, v, a), orient(u, v, b));
+        let ends_inside = from_b == 0.0 && between(u, v, b) && model.vertex_at(b).is_none();
+        ends_inside || opposite(from_a, from_b) && opposite(orient(a, b, u), orient(a, b, v))
+    })
 }
 
 /// Where the walls of a random scene lie.
@@ -172,6 +182,12 @@ fn agrees(kind: Kind, scale: i32, walls: &[Numbers], moves: &[(Numbers, u8)]) {
     let trace = Trace { id: 3, points };
     let truth = settle_plainly(&model, &trace);
     assert_eq!(settle(&model, &trace), truth);
+    // Steps that slip between walls at their ends are the only ones that break the rules without crossing or ending inside.
+    let steps = std::iter::once(model.anchor()).chain(trace.points.iter().copied()).zip(trace.points.iter().copied());
+    let broken: Vec<u32> = steps.zip(0..).filter(|&((a, b), _)| breaks(&model, a, b)).map(|(_, step)| step).collect();
+    let counted = &truth.broken.steps;
+    assert!(counted.is_sorted_by(|a, b| a < b) && broken.iter().all(|step| counted.contains(step)));
+    assert_eq!(truth.violations(), if truth.hairs.is_empty() { broken.len() } else { counted.len() });
     // Step by step, so that what comes after a violation is seen too.
     let mut from = model.anchor();
     for &to in &trace.points {

@@ -49,6 +49,33 @@ pub struct Violation {
     pub to: DVec2,
 }
 
+/// The steps of a trace that break the rules.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Broken {
+    pub(super) first: Option<Violation>,
+    /// Their numbers, each once and ascending when all are noted and [`sort`](Self::sort) was called.
+    pub(super) steps: Vec<u32>,
+}
+
+impl Broken {
+    /// Notes a violation. Keeps that of the earlier step and there that of the wall with the smaller number; of two kinds at
+    /// one wall the one found first.
+    pub(super) fn note(&mut self, found: Violation) {
+        if self.first.is_none_or(|v| (found.step, found.wall) < (v.step, v.wall)) {
+            self.first = Some(found);
+        }
+        // Most steps that cross one wall cross another: an obstacle's far side.
+        if self.steps.last() != Some(&(found.step as u32)) {
+            self.steps.push(found.step as u32);
+        }
+    }
+
+    pub(super) fn sort(&mut self) {
+        self.steps.sort_unstable();
+        self.steps.dedup();
+    }
+}
+
 /// A trace that is ready to be evaluated.
 ///
 /// Its points are those of the trace, with the anchor before them (unless the trace starts there) and a point added
@@ -61,7 +88,7 @@ pub struct SettledTrace {
     pub(super) added: Vec<u32>,
     /// The hairs by point index, ascending.
     pub(super) hairs: Vec<(u32, Hair)>,
-    pub(super) violation: Option<Violation>,
+    pub(super) broken: Broken,
     pub(super) bounds: (DVec2, DVec2),
 }
 
@@ -72,10 +99,10 @@ pub fn bounds(traces: &[SettledTrace]) -> Option<(DVec2, DVec2)> {
 
 impl SettledTrace {
     /// A trace without hairs. Panics if it has no points.
-    pub(super) fn new(id: u64, points: Vec<DVec2>, added: Vec<u32>, violation: Option<Violation>) -> Self {
+    pub(super) fn new(id: u64, points: Vec<DVec2>, added: Vec<u32>, broken: Broken) -> Self {
         let first = points[0];
         let bounds = points.iter().fold((first, first), |(low, high), &p| (lower(low, p), higher(high, p)));
-        SettledTrace { id, points, added, hairs: Vec::new(), violation, bounds }
+        SettledTrace { id, points, added, hairs: Vec::new(), broken, bounds }
     }
 
     /// The trace's number.
@@ -139,6 +166,11 @@ impl SettledTrace {
 
     /// The first step that breaks the small update condition, if one does.
     pub fn violation(&self) -> Option<&Violation> {
-        self.violation.as_ref()
+        self.broken.first.as_ref()
+    }
+
+    /// How many of the trace's steps break it, each counted once however many walls it crosses. O(1).
+    pub fn violations(&self) -> usize {
+        self.broken.steps.len()
     }
 }
