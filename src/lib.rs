@@ -41,6 +41,7 @@ mod read_error;
 pub mod report;
 pub mod rope;
 pub mod scene;
+pub mod simplify;
 pub mod study;
 pub mod trace;
 pub mod visibility;

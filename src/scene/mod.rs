@@ -92,6 +92,13 @@ impl Scene {
         self
     }
 
+    /// The same scene with these walls between its vertices in place of its own.
+    pub(crate) fn with_walls(&self, walls: impl IntoIterator<Item = [u32; 2]>) -> Self {
+        let ends = walls.into_iter().map(|wall| wall.map(|v| self.vertices[v as usize]));
+        let Scene { vertices, walls, .. } = Scene::new(ends).expect("its vertices are sound");
+        Scene { vertices, walls, notes: self.notes.clone(), ..*self }
+    }
+
     /// The ends of all walls, each once.
     pub fn vertices(&self) -> &[DVec2] {
         &self.vertices

@@ -34,6 +34,8 @@ struct Triangle([HalfEdge; 4]);
 pub(super) struct Mesh {
     vertices: Vec<DVec2>,
     walls: Vec<[u32; 2]>,
+    /// The walls along which not every edge is closed.
+    loose: Vec<u32>,
     /// The model's number of each vertex, or [`ABSENT`].
     names: Vec<u32>,
     /// The vertex of each pivot, the model's vertices and then the anchor, or [`ABSENT`].
@@ -102,7 +104,8 @@ impl Mesh {
             room = room.saturating_sub(cdt.try_add_constraint(u, v).len());
             added += 1;
         }
-        let mut mesh = Mesh { vertices, walls, names, pivots, triangles: vec![], fans: vec![], first_fan: vec![] };
+        let mut mesh =
+            Mesh { vertices, walls, loose: vec![], names, pivots, triangles: vec![], fans: vec![], first_fan: vec![] };
         mesh.take_triangles(&cdt);
         mesh.close(&cdt, added);
         Some(mesh)
@@ -174,12 +177,16 @@ impl Mesh {
                     let p = self.at(to);
                     edge.is_constraint_edge() && (to == v || orient(at, end, p) == 0.0 && between(at, end, p))
                 });
-                let Some(edge) = along else { break };
+                let Some(edge) = along else {
+                    self.loose.push(wall as u32);
+                    break;
+                };
                 let next = edge.to().fix().index() as u32;
                 self.close_edge(here, next);
                 here = next;
             }
         }
+        self.loose.extend(walls as u32..self.walls.len() as u32);
     }
 
     fn close_edge(&mut self, u: u32, v: u32) {
@@ -206,6 +213,12 @@ impl Mesh {
     /// The walls in the mesh.
     pub(super) fn walls(&self) -> &[[u32; 2]] {
         &self.walls
+    }
+
+    /// The ends of the walls along which one can see, or walk, from one side to the other somewhere: they cross others at
+    /// points that no f64 names, or there were too many walls on each other.
+    pub(super) fn loose(&self) -> impl Iterator<Item = [DVec2; 2]> {
+        self.loose.iter().map(|&wall| self.walls[wall as usize].map(|v| self.at(v)))
     }
 
     /// The model's number of a vertex, or [`ABSENT`].
