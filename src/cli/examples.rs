@@ -32,6 +32,12 @@ pub(super) const BENCH: &str = "Examples:
   tautline bench --engine cpu --engine funnel --sweep n
   tautline bench --scene rooms --json";
 
+pub(super) const TRADEOFF: &str = "Examples:
+  tautline tradeoff                                          all methods, in the floor plan
+  tautline tradeoff --scene coast.geojson --out coast.svg    with its diagram
+  tautline tradeoff --scene coast.geojson --traces drags.parquet --stride 2,5,10 --simplify 0.1,1
+  tautline tradeoff --engine cpu --engine funnel --json";
+
 pub(super) const ADAPTERS: &str = "Examples:
   tautline adapters
   tautline adapters --json";

@@ -15,11 +15,13 @@ mod input;
 mod interrupt;
 mod look;
 mod manual;
+mod named_scene;
 mod output;
 mod progress;
 mod spread;
 mod study;
 mod summary;
+mod tradeoff;
 mod violations;
 
 use std::io::Write;
@@ -62,6 +64,9 @@ enum Command {
     /// Measure the throughput of all engines, side by side on the same walks
     #[command(after_help = examples::BENCH)]
     Bench(bench::Args),
+    /// Measure what speed costs in accuracy: every method at every setting, against the exact reference
+    #[command(after_help = examples::TRADEOFF)]
+    Tradeoff(tradeoff::Args),
     /// List the GPUs that this machine offers
     #[command(after_help = examples::ADAPTERS)]
     Adapters(adapters::Args),
@@ -85,6 +90,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Draw(args) => draw::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Tradeoff(args) => tradeoff::run(&args),
         Command::Adapters(args) => adapters::run(&args),
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::man(&args),

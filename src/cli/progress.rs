@@ -95,3 +95,12 @@ mod tests {
         assert!(unknown.parts(3) >= PARTS);
     }
 }
+
+/// A bar that counts runs of a measurement.
+pub(crate) fn runs(total: u64) -> ProgressBar {
+    let bar = ProgressBar::new(total);
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} runs, {elapsed}, {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}

@@ -1,6 +1,6 @@
 //! The seed note's listing 1, as written: the baseline that is measured against. Plain f64, at most one event a step,
 //! the first crossing in list order. It is wrong on collinear walls, on several wraps in one step, and on rounding; it is
-//! kept to be measured, not to be used.
+//! kept to be measured, not to be used. So is the note's remedy for walls on one line.
 
 use glam::DVec2;
 
@@ -18,12 +18,21 @@ const INF: f64 = 1e9;
 #[derive(Clone, Copy)]
 pub struct Note<'m> {
     model: &'m Model,
+    furthest: bool,
 }
 
 impl<'m> Note<'m> {
     /// An engine for `model`.
     pub fn new(model: &'m Model) -> Self {
-        Note { model }
+        Note { model, furthest: false }
+    }
+
+    /// The same with what the note says of walls on one line: of all the rays that a step crosses, the one whose source is
+    /// furthest from the pivot is taken, not the first in the list.
+    #[must_use]
+    pub fn furthest(mut self) -> Self {
+        self.furthest = true;
+        self
     }
 }
 
@@ -44,6 +53,7 @@ impl Engine for Note<'_> {
         // The flattened list of the obstacle segments' ends: a shared end stands in it once a segment.
         let obstacle_points: Vec<(u32, DVec2)> =
             model.scene().walls().iter().flatten().map(|&v| (v, model.vertices()[v as usize])).collect();
+        let listing = Listing { anchor: model.anchor(), obstacle_points: &obstacle_points, furthest: self.furthest };
         let mut walk = Walk::new();
         let mut records = Vec::with_capacity(traces.len());
         for trace in traces {
@@ -51,8 +61,7 @@ impl Engine for Note<'_> {
             let mut unwrapping_ray = (DVec2::ZERO, DVec2::ZERO);
             while !walk.is_done(trace) {
                 job.go_on()?;
-                let (a0, a) = (trace.points()[walk.at], trace.points()[walk.at + 1]);
-                step(&mut walk, trace, model.anchor(), &obstacle_points, &mut unwrapping_ray, a0, a);
+                listing.step(&mut walk, trace, &mut unwrapping_ray);
                 let before = trace.step(walk.at);
                 walk.arrive(trace);
                 job.count(trace.step(walk.at) - before);
@@ -64,41 +73,53 @@ impl Engine for Note<'_> {
     }
 }
 
-/// One turn of the listing's outer loop.
-fn step(
-    walk: &mut Walk,
-    trace: &SettledTrace,
+/// What the listing goes by.
+struct Listing<'a> {
     anchor: DVec2,
-    obstacle_points: &[(u32, DVec2)],
-    unwrapping_ray: &mut Ray,
-    a0: DVec2,
-    a: DVec2,
-) {
-    for &(vertex, point) in obstacle_points {
+    obstacle_points: &'a [(u32, DVec2)],
+    furthest: bool,
+}
+
+impl Listing<'_> {
+    /// One turn of the listing's outer loop.
+    fn step(&self, walk: &mut Walk, trace: &SettledTrace, unwrapping_ray: &mut Ray) {
+        let [a0, a] = [walk.at, walk.at + 1].map(|i| trace.points()[i]);
         let last = walk.rope.pivot();
-        if point == last {
-            continue;
-        }
-        let ray = ray(last, point);
-        if intersect(a0, a, ray) {
-            *unwrapping_ray = ray;
-            // The listing keeps no sides: the side is the way in which the trace passes the ray.
-            let side = Side::of(ccw(last, point, a));
-            walk.rope.push(vertex, point, side);
-            walk.note(trace, EventKind::Wrap, vertex, side);
-            return;
-        }
-        if !walk.rope.contacts().is_empty() && intersect(a0, a, *unwrapping_ray) {
-            if let Some(c) = walk.rope.pop() {
-                walk.note(trace, EventKind::Unwrap, c.vertex, c.side);
+        for (i, &(vertex, point)) in self.obstacle_points.iter().enumerate() {
+            if point == last {
+                continue;
             }
-            *unwrapping_ray = match walk.rope.contacts() {
-                [] => (DVec2::ZERO, DVec2::ZERO),
-                [only] => self::ray(anchor, only.at),
-                [.., prior, last] => self::ray(prior.at, last.at),
-            };
-            return;
+            if intersect(a0, a, ray(last, point)) {
+                let (vertex, point) =
+                    if self.furthest { self.furthest_crossed(i, last, [a0, a]) } else { (vertex, point) };
+                *unwrapping_ray = ray(last, point);
+                // The listing keeps no sides: the side is the way in which the trace passes the ray.
+                let side = Side::of(ccw(last, point, a));
+                walk.rope.push(vertex, point, side);
+                walk.note(trace, EventKind::Wrap, vertex, side);
+                return;
+            }
+            if !walk.rope.contacts().is_empty() && intersect(a0, a, *unwrapping_ray) {
+                if let Some(c) = walk.rope.pop() {
+                    walk.note(trace, EventKind::Unwrap, c.vertex, c.side);
+                }
+                *unwrapping_ray = match walk.rope.contacts() {
+                    [] => (DVec2::ZERO, DVec2::ZERO),
+                    [only] => ray(self.anchor, only.at),
+                    [.., prior, last] => ray(prior.at, last.at),
+                };
+                return;
+            }
         }
+    }
+
+    /// Of the points from number `first` on, whose ray is crossed, the one furthest from the pivot whose ray is.
+    fn furthest_crossed(&self, first: usize, last: DVec2, [a0, a]: [DVec2; 2]) -> (u32, DVec2) {
+        let later = self.obstacle_points[first + 1..].iter().filter(|p| p.1 != last);
+        let crossed = later.filter(|p| intersect(a0, a, ray(last, p.1)));
+        crossed.fold(self.obstacle_points[first], |found, &p| {
+            if p.1.distance_squared(last) > found.1.distance_squared(last) { p } else { found }
+        })
     }
 }
 

@@ -23,6 +23,7 @@ mod survival;
 mod svg;
 mod tables;
 mod ticks;
+mod tradeoff;
 
 use crate::scene::Scene;
 use crate::study::Summary;
@@ -35,6 +36,7 @@ pub use page::page;
 pub use raster::{PictureError, png};
 pub use ropes::ropes;
 pub use survival::survival;
+pub use tradeoff::tradeoff;
 
 /// All pictures that there are of a study: for each the name of its file without an extension, its title, and the SVG.
 pub fn all(summary: &Summary, scene: &Scene) -> Vec<(String, String, String)> {

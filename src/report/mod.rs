@@ -2,7 +2,10 @@
 
 pub mod bench;
 mod environment;
+mod note;
 mod spread;
+pub mod tradeoff;
 
 pub use environment::{Environment, processor};
+pub use note::{NoteErrors, note_errors};
 pub use spread::Spread;

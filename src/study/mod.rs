@@ -25,4 +25,5 @@ pub use summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Stopped, Summary, Survival,
     SurvivalPoint,
 };
+pub(crate) use tally::Moments;
 pub use walk::Walks;

@@ -22,6 +22,7 @@ pub use read::{TraceReader, read_traces};
 pub(crate) use settle::{first_violation, settle_clear};
 pub use settle::{settle, settle_owned};
 pub use settled::{SettledTrace, Violation, ViolationKind, bounds};
+pub use stride::settle_strided;
 
 /// One trace: its number and its points, in the scene's frame and unit.
 ///

@@ -1,5 +1,7 @@
 //! A trace that is ready to be evaluated, and what can be wrong with one.
 
+use std::borrow::Cow;
+
 use glam::DVec2;
 
 use crate::geometry::{Hair, Shown, TracePoint, higher, lower};
@@ -70,6 +72,12 @@ impl Broken {
         }
     }
 
+    /// Names each step `i` by `numbers[i]` instead.
+    pub(super) fn renumber(&mut self, numbers: &[u32]) {
+        self.first.iter_mut().for_each(|v| v.step = numbers[v.step] as usize);
+        self.steps.iter_mut().for_each(|step| *step = numbers[*step as usize]);
+    }
+
     pub(super) fn sort(&mut self) {
         self.steps.sort_unstable();
         self.steps.dedup();
@@ -79,7 +87,7 @@ impl Broken {
 /// A trace that is ready to be evaluated.
 ///
 /// Its points are those of the trace, with the anchor before them (unless the trace starts there) and a point added
-/// wherever a step passes through a vertex.
+/// wherever a step passes through a vertex; or, if it was [thinned](super::settle_strided), some of those of the trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SettledTrace {
     pub(super) id: u64,
@@ -90,6 +98,16 @@ pub struct SettledTrace {
     pub(super) hairs: Vec<(u32, Hair)>,
     pub(super) broken: Broken,
     pub(super) bounds: (DVec2, DVec2),
+    pub(super) thinned: Thinned,
+}
+
+/// What a trace has lost.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Thinned {
+    /// The numbers of the steps that the trace's own points end, ascending; empty if all are there.
+    pub used: Vec<u32>,
+    /// How many longer steps were walked as given, since a wall is in their way.
+    pub jumps: usize,
 }
 
 /// The lowest and the highest x and y of all points of all traces; `None` if there are no traces. O(traces).
@@ -102,7 +120,7 @@ impl SettledTrace {
     pub(super) fn new(id: u64, points: Vec<DVec2>, added: Vec<u32>, broken: Broken) -> Self {
         let first = points[0];
         let bounds = points.iter().fold((first, first), |(low, high), &p| (lower(low, p), higher(high, p)));
-        SettledTrace { id, points, added, hairs: Vec::new(), broken, bounds }
+        SettledTrace { id, points, added, hairs: Vec::new(), broken, bounds, thinned: Thinned::default() }
     }
 
     /// The trace's number.
@@ -121,7 +139,8 @@ impl SettledTrace {
     }
 
     /// Whether every point is one of the trace's own and none stands on a vertex: the trace starts at the anchor and touches
-    /// nothing. Then point k ends step k, and no point has a hair.
+    /// nothing. Then every point ends a step, that of its own number unless the trace is [thinned](Self::is_thinned), and none
+    /// has a hair.
     #[inline]
     pub fn is_plain(&self) -> bool {
         self.added.is_empty() && self.hairs.is_empty()
@@ -141,11 +160,15 @@ impl SettledTrace {
     /// points added).
     #[inline]
     pub fn step(&self, i: usize) -> usize {
-        match *self.added.as_slice() {
+        let own = match *self.added.as_slice() {
             [] => i,
             // The anchor, as for most traces that do not start there.
             [0] => i - usize::from(i > 0),
             ref added => i - added.partition_point(|&a| (a as usize) < i),
+        };
+        match self.thinned.used.as_slice() {
+            [] => own,
+            used => used[own] as usize,
         }
     }
 
@@ -159,9 +182,40 @@ impl SettledTrace {
         }
     }
 
-    /// The number of the trace's steps: its points less one.
+    /// The number of the trace's steps: its points less one, those that were left out counted in.
     pub fn steps(&self) -> usize {
-        (self.points.len() - self.added.len()).saturating_sub(1)
+        match self.thinned.used.last() {
+            Some(&last) => last as usize,
+            None => (self.points.len() - self.added.len()).saturating_sub(1),
+        }
+    }
+
+    /// Whether some of the trace's points were left out.
+    pub fn is_thinned(&self) -> bool {
+        !self.thinned.used.is_empty()
+    }
+
+    /// How many of the longer steps of a [thinned](super::settle_strided) trace were walked point by point, as given, since they
+    /// would have touched a wall.
+    pub fn jumps(&self) -> usize {
+        self.thinned.jumps
+    }
+
+    /// Where the free end is after each step, step 0 being the move to the trace's first point. After steps that were left
+    /// out it still is where it was after the one before. O(steps), or O(1) where the points are just that.
+    pub fn ends(&self) -> Cow<'_, [DVec2]> {
+        if self.is_plain() && !self.is_thinned() {
+            return Cow::Borrowed(&self.points);
+        }
+        let own = (0..self.points.len()).filter(|&i| self.ends_step(i));
+        let mut ends: Vec<DVec2> = Vec::with_capacity(self.steps() + 1);
+        for i in own {
+            if let Some(&last) = ends.last() {
+                ends.resize(self.step(i), last);
+            }
+            ends.push(self.points[i]);
+        }
+        ends.into()
     }
 
     /// The first step that breaks the small update condition, if one does.

@@ -1,54 +1,75 @@
-//! Coarser traces: every k-th point of a fine one.
+//! Coarser traces: straight from every k-th point to the next.
 
-use super::Trace;
+use super::settled::Thinned;
+use super::{SettledTrace, Trace, settle_owned};
+use crate::scene::Model;
 
-impl Trace {
-    /// The trace through points 0, `k`, 2 `k` and so on, and through the last point: fewer steps, which are longer. O(points).
-    ///
-    /// It goes straight where the trace went round things. What lies between is passed on the other side then, or, if it is a
-    /// wall, crossed, which [`settle`](super::settle) finds.
-    ///
-    /// ```
-    /// use tautline::trace::Trace;
-    /// let trace = Trace { id: 7, points: (0..6).map(|i| [f64::from(i), 0.0].into()).collect() };
-    /// let along: Vec<f64> = trace.strided(2).points.iter().map(|p| p.x).collect();
-    /// assert_eq!(along, [0.0, 2.0, 4.0, 5.0]);
-    /// ```
-    ///
-    /// # Panics
-    ///
-    /// If `k` is 0.
-    #[must_use]
-    pub fn strided(mut self, k: usize) -> Trace {
-        assert!(k > 0, "a stride is at least 1");
-        let count = self.points.len();
-        if k > 1 && count > 1 {
-            let whole = (count - 1) / k;
-            for i in 1..=whole {
-                self.points[i] = self.points[i * k];
-            }
-            self.points[whole + usize::from((count - 1) % k > 0)] = self.points[count - 1];
-            self.points.truncate((count - 1).div_ceil(k) + 1);
-        }
-        self
+/// Settles the trace that goes straight from every `k`-th point of `trace` to the next, and to the last: fewer steps, which are
+/// longer. Where a longer step would touch a wall, the trace is followed point by point instead, and that is
+/// [counted](SettledTrace::jumps). So a trace that keeps to the rules still does.
+///
+/// Steps keep their numbers: what happens on a longer step is said of the last of those that it stands for. What the trace
+/// went round between the points is passed straight, so a wall that lies there is passed on the other side if the longer
+/// step does not touch it.
+///
+/// O(points + walls near the longer steps and those that are followed), through the model's index.
+///
+/// ```
+/// use tautline::scene::{Model, Scene};
+/// use tautline::trace::{Trace, settle_strided};
+///
+/// // Over the end of a wall, whose lower part is in the way of a longer step.
+/// let model = Model::new(Scene::new([[[2.5, -9.0].into(), [2.5, 1.0].into()]])?, Some([0.0, 0.0].into()))?;
+/// let points = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 2.0], [4.0, 0.0], [5.0, 0.0]].map(Into::into).to_vec();
+/// let settled = settle_strided(&model, Trace { id: 0, points }, 2);
+/// let at: Vec<_> = settled.points().iter().map(|p| p.x).collect();
+/// assert_eq!((at, settled.jumps()), (vec![0.0, 2.0, 3.0, 4.0, 5.0], 1));
+/// assert_eq!((settled.step(2), settled.steps()), (3, 5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Panics
+///
+/// If `k` is 0, and where [`settle`](super::settle) does.
+pub fn settle_strided(model: &Model, mut trace: Trace, k: usize) -> SettledTrace {
+    assert!(k > 0, "a stride is at least 1");
+    let thinned = thin(model, &mut trace, k);
+    let mut settled = settle_owned(model, trace);
+    if !thinned.used.is_empty() {
+        settled.broken.renumber(&thinned.used);
     }
+    settled.thinned = thinned;
+    settled
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_stride_keeps_every_kth_point_and_the_last() {
-        for count in 0..20u32 {
-            let trace = Trace { id: 3, points: (0..count).map(|i| [f64::from(i), 0.5].into()).collect() };
-            assert_eq!(trace.clone().strided(1), trace);
-            for k in 1..25 {
-                let kept: Vec<u32> = (0..count).filter(|i| i % k == 0 || i + 1 == count).collect();
-                let strided = trace.clone().strided(k as usize);
-                assert_eq!(strided.points.iter().map(|p| p.x as u32).collect::<Vec<_>>(), kept, "{count} by {k}");
-                assert_eq!(strided.id, 3);
-            }
-        }
+/// Leaves points out of `trace`, and says which.
+fn thin(model: &Model, trace: &mut Trace, k: usize) -> Thinned {
+    let last = trace.points.len().saturating_sub(1);
+    if k == 1 || last == 0 {
+        return Thinned::default();
     }
+    let points = &mut trace.points;
+    let mut thinned = Thinned { used: vec![0], jumps: 0 };
+    let (mut from, mut start) = (0, points[0]);
+    while from < last {
+        let to = last.min(from + k);
+        let end = points[to];
+        let first = if to - from == 1 || model.is_clear(start, end) {
+            to
+        } else {
+            thinned.jumps += 1;
+            from + 1
+        };
+        for i in first..=to {
+            // Never further along than where it comes from.
+            points[thinned.used.len()] = points[i];
+            thinned.used.push(i as u32);
+        }
+        (from, start) = (to, end);
+    }
+    points.truncate(thinned.used.len());
+    if thinned.used.len() > last {
+        thinned.used.clear();
+    }
+    thinned
 }

@@ -7,16 +7,21 @@ use tautline::report::{Environment, Spread};
 
 /// The whole document.
 pub(super) fn report(environment: &Environment, seed: u64, measured: &Measured) -> Value {
-    let adapter = environment.adapter.as_ref();
     json!({
-        "environment": {
-            "adapter": adapter.map(|a| &a.name), "adapter_type": adapter.map(|a| a.kind.to_string()),
-            "backend": adapter.map(|a| &a.backend), "driver": adapter.map(|a| &a.driver),
-            "processor": environment.processor, "os": environment.os, "threads": environment.threads,
-            "version": environment.version, "commit": environment.commit, "seed": seed,
-        },
+        "environment": surroundings(environment, seed),
         "results": measured.rows.iter().map(row).collect::<Vec<_>>(),
         "skipped": measured.skipped.iter().map(|s| json!({"engine": s.contender, "why": s.why})).collect::<Vec<_>>(),
+    })
+}
+
+/// Where something was measured, and the seed of what was.
+pub(in crate::cli) fn surroundings(environment: &Environment, seed: u64) -> Value {
+    let adapter = environment.adapter.as_ref();
+    json!({
+        "adapter": adapter.map(|a| &a.name), "adapter_type": adapter.map(|a| a.kind.to_string()),
+        "backend": adapter.map(|a| &a.backend), "driver": adapter.map(|a| &a.driver),
+        "processor": environment.processor, "os": environment.os, "threads": environment.threads,
+        "version": environment.version, "commit": environment.commit, "seed": seed,
     })
 }
 
@@ -35,6 +40,6 @@ fn row(row: &Row) -> Value {
     })
 }
 
-fn spread(s: Spread) -> Value {
+pub(in crate::cli) fn spread(s: Spread) -> Value {
     json!({"min": s.min, "median": s.median, "max": s.max})
 }

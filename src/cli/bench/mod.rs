@@ -1,14 +1,12 @@
 //! `tautline bench`.
 
-mod json;
-mod scene;
-mod table;
+pub(super) mod json;
+pub(super) mod table;
 
 use std::time::Duration;
 
 use anyhow::anyhow;
 use glam::DVec2;
-use indicatif::{ProgressBar, ProgressStyle};
 use tautline::engine::WINDOW;
 use tautline::gpu::{AdapterChoice, Device};
 use tautline::report::Environment;
@@ -16,7 +14,8 @@ use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured,
 
 use super::engine::named;
 use super::failure::Failure;
-use super::{interrupt, print, print_json};
+use super::progress::runs;
+use super::{interrupt, named_scene, print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -24,7 +23,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME|FILE", default_value = "random-500")]
     scene: String,
     /// Where the rope is tied in a scene file; overrides what the file says
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = scene::point)]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = named_scene::point)]
     anchor: Option<DVec2>,
     /// The length of a step, about, in the scene's unit [default: 0.01 in random-M, 0.1 in lattice-M, 0.25 in rooms, a
     /// tenth of the mean distance between walls in files]
@@ -86,7 +85,7 @@ impl SweepName {
 }
 
 /// A number above 0, neither so large nor so small that no clock and no walk could make anything of it.
-fn length(text: &str) -> Result<f64, String> {
+pub(super) fn length(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|x: &f64| (1e-9..=1e9).contains(x));
     number.ok_or_else(|| "give a number from 1e-9 to 1e9, such as 0.01".to_owned())
 }
@@ -123,10 +122,7 @@ fn measure_all(
     device: Option<&Device>,
     plan: &Plan,
 ) -> Result<Measured, Failure> {
-    let bar = ProgressBar::new(settings.len() as u64);
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} runs, {elapsed}, {msg}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.enable_steady_tick(Duration::from_millis(200));
+    let bar = runs(settings.len() as u64);
     let mut all = Measured::default();
     for (i, setting) in settings.iter().enumerate() {
         bar.set_message(format!("{}: walking", setting.scene.name()));
@@ -157,7 +153,7 @@ fn failure(error: BenchError) -> Failure {
 
 impl Args {
     fn setting(&self) -> Result<Setting, Failure> {
-        let scene = scene::open(&self.scene, self.anchor)?;
+        let scene = named_scene::open(&self.scene, self.anchor)?;
         Ok(Setting {
             step: self.step.unwrap_or_else(|| scene.step()),
             scene,
@@ -181,7 +177,7 @@ impl Args {
         CONTENDERS.into_iter().filter(wanted).collect()
     }
 
-    /// The GPU, where one is needed. One that nobody asked for may be missing.
+    /// The GPU, where one is needed.
     fn device(&self, contenders: &[Contender]) -> Result<Option<Device>, Failure> {
         if !contenders.iter().any(Contender::needs_gpu) {
             return match self.adapter {
@@ -189,16 +185,21 @@ impl Args {
                 None => Ok(None),
             };
         }
-        match Device::open(&self.adapter.as_deref().map_or(AdapterChoice::Best, named)) {
-            Ok(device) => {
-                eprintln!("engine: gpu on {}", device.summary());
-                Ok(Some(device))
-            }
-            Err(error) if self.adapter.is_some() || !self.engine.is_empty() => Err(error.into()),
-            Err(error) => {
-                eprintln!("note: {error}");
-                Ok(None)
-            }
+        open_device(self.adapter.as_deref(), !self.engine.is_empty())
+    }
+}
+
+/// The GPU called `adapter`, else the best. One that nobody asked for may be missing.
+pub(super) fn open_device(adapter: Option<&str>, is_asked_for: bool) -> Result<Option<Device>, Failure> {
+    match Device::open(&adapter.map_or(AdapterChoice::Best, named)) {
+        Ok(device) => {
+            eprintln!("engine: gpu on {}", device.summary());
+            Ok(Some(device))
+        }
+        Err(error) if adapter.is_some() || is_asked_for => Err(error.into()),
+        Err(error) => {
+            eprintln!("note: {error}");
+            Ok(None)
         }
     }
 }

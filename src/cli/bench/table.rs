@@ -102,7 +102,7 @@ fn relative(row: &Row) -> [String; 2] {
     row.relative.map_or([NONE; 2].map(str::to_owned), |r| [short(r.ratio), range(r.paired)])
 }
 
-fn range(spread: Spread) -> String {
+pub(in crate::cli) fn range(spread: Spread) -> String {
     format!("{}..{}", short(spread.min), short(spread.max))
 }
 
@@ -122,12 +122,17 @@ fn table<const A: usize, const B: usize>(
 ) -> String {
     let heading: Vec<String> = names.iter().chain(numbers).map(|&text| text.to_owned()).collect();
     let cells = rows.iter().map(|row| name(row).into_iter().chain(number(row)).collect());
-    let lines: Vec<Vec<String>> = std::iter::once(heading).chain(cells).collect();
+    aligned(A, &std::iter::once(heading).chain(cells).collect::<Vec<_>>())
+}
+
+/// Lines of as many cells, all columns as wide as they need be: the first `left` stand on the left, the others on the right.
+pub(in crate::cli) fn aligned(left: usize, lines: &[Vec<String>]) -> String {
+    let columns = lines.first().map_or(0, Vec::len);
     let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..A + B).map(width).collect();
+    let widths: Vec<usize> = (0..columns).map(width).collect();
     let mut text = String::new();
-    for line in &lines {
-        let padded = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column < A {
+    for line in lines {
+        let padded = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column < left {
             true => format!("{cell:width$}"),
             false => format!("{cell:>width$}"),
         });

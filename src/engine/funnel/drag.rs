@@ -59,14 +59,14 @@ impl Drag {
     /// Follows the legs from point `from` to point `to` and sees the taut rope after every step.
     fn follow(&mut self, mesh: &Mesh, trace: &SettledTrace, from: usize, to: usize) {
         // Most traces touch nothing: then the only point added, if any, is the anchor, at the start.
-        let added = trace.points().len() - 1 - trace.steps();
-        let touches = added != usize::from(!trace.ends_step(0));
+        let anchor = usize::from(!trace.ends_step(0));
+        let is_usual = !trace.is_thinned() && trace.points().len() - 1 - trace.steps() == anchor;
         for i in from + 1..=to {
             if self.word.follow(mesh, trace, i) {
                 self.tighten(mesh);
             }
-            if !touches {
-                self.see(trace, i, i - added);
+            if is_usual {
+                self.see(trace, i, i - anchor);
             } else if trace.ends_step(i) {
                 self.see(trace, i, trace.step(i));
             }

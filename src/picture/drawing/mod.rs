@@ -111,8 +111,11 @@ impl<'a> Drawing<'a> {
     /// With a trace and its rope. Both must be of the drawing's model. O(points).
     #[must_use]
     pub fn with(mut self, trace: &SettledTrace, record: &'a TraceRecord) -> Self {
-        let points = trace.points().iter().enumerate().filter(|&(i, _)| trace.ends_step(i)).map(|(_, &p)| p).collect();
-        self.dragged.push(Dragged { record, points, crossing: trace.violation().map(|v| v.step) });
+        self.dragged.push(Dragged {
+            record,
+            points: trace.ends().into_owned(),
+            crossing: trace.violation().map(|v| v.step),
+        });
         self
     }
 

@@ -13,7 +13,7 @@ pub struct Contender {
     /// How it is used, in a few words.
     pub variant: &'static str,
     /// What its results must agree with.
-    pub(super) promise: Promise,
+    pub(in crate::report) promise: Promise,
     /// Whether the widest window changes what it does.
     pub windowed: bool,
     open: Open,
@@ -30,7 +30,7 @@ pub struct Gear {
 
 /// What a contender's results must agree with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Promise {
+pub(in crate::report) enum Promise {
     /// Every record is that of the reference, event for event.
     Events,
     /// The taut rope at the end is the reference's; events may differ.
@@ -52,65 +52,89 @@ enum Open {
     Thread(for<'m> fn(&'m Model) -> Box<dyn Engine + 'm>),
 }
 
-/// All contenders, in the order of the report. The baseline, `note`, is one of them.
-pub const CONTENDERS: [Contender; 8] = [
-    Contender {
-        engine: "gpu",
-        variant: "windows",
-        promise: Promise::Events,
-        windowed: true,
-        open: Open::Gpu(|gpu, window| gpu.window(window)),
-    },
-    Contender {
-        engine: "cpu",
-        variant: "windows",
-        promise: Promise::Events,
-        windowed: true,
-        open: Open::Threads(|model, window| Box::new(Cpu::new(model).window(window))),
-    },
-    Contender {
-        engine: "gpu",
-        variant: "window 1, all vertices",
-        promise: Promise::Events,
-        windowed: false,
-        open: Open::Gpu(|gpu, _| gpu.window(1).keep_all()),
-    },
-    Contender {
-        engine: "gpu",
-        variant: "fast, windows",
-        promise: Promise::Nothing,
-        windowed: true,
-        open: Open::FastGpu,
-    },
-    Contender {
-        engine: "funnel",
-        variant: "every step",
-        promise: Promise::Ropes,
-        windowed: false,
-        open: Open::Threads(|model, _| Box::new(Funnel::new(model))),
-    },
-    Contender {
-        engine: "funnel",
-        variant: "final rope only",
-        promise: Promise::Ropes,
-        windowed: false,
-        open: Open::Threads(|model, _| Box::new(Funnel::new(model).final_only())),
-    },
-    Contender {
-        engine: "note",
-        variant: "listing 1",
-        promise: Promise::Nothing,
-        windowed: false,
-        open: Open::Thread(|model| Box::new(Note::new(model))),
-    },
-    Contender {
-        engine: "reference",
-        variant: "one by one",
-        promise: Promise::Events,
-        windowed: false,
-        open: Open::Thread(|model| Box::new(Reference::new(model))),
-    },
-];
+/// The product: a candidate pass on the GPU over windows of steps.
+pub(in crate::report) const GPU: Contender = Contender {
+    engine: "gpu",
+    variant: "windows",
+    promise: Promise::Events,
+    windowed: true,
+    open: Open::Gpu(|gpu, window| gpu.window(window)),
+};
+
+/// The same on threads.
+pub(in crate::report) const CPU: Contender = Contender {
+    engine: "cpu",
+    variant: "windows",
+    promise: Promise::Events,
+    windowed: true,
+    open: Open::Threads(|model, window| Box::new(Cpu::new(model).window(window))),
+};
+
+/// The shape of the note's method: one test a vertex and step.
+const GPU_ALL: Contender = Contender {
+    engine: "gpu",
+    variant: "window 1, all vertices",
+    promise: Promise::Events,
+    windowed: false,
+    open: Open::Gpu(|gpu, _| gpu.window(1).keep_all()),
+};
+
+/// The product in a hurry.
+pub(in crate::report) const FAST: Contender = Contender {
+    engine: "gpu",
+    variant: "fast, windows",
+    promise: Promise::Nothing,
+    windowed: true,
+    open: Open::FastGpu,
+};
+
+/// The other method, which knows the rope after every step.
+pub(in crate::report) const FUNNEL: Contender = Contender {
+    engine: "funnel",
+    variant: "every step",
+    promise: Promise::Ropes,
+    windowed: false,
+    open: Open::Threads(|model, _| Box::new(Funnel::new(model))),
+};
+
+/// The other method, which knows the rope at the end only.
+pub(in crate::report) const FUNNEL_FINAL: Contender = Contender {
+    engine: "funnel",
+    variant: "final rope only",
+    promise: Promise::Ropes,
+    windowed: false,
+    open: Open::Threads(|model, _| Box::new(Funnel::new(model).final_only())),
+};
+
+/// The baseline.
+pub(in crate::report) const NOTE: Contender = Contender {
+    engine: "note",
+    variant: "listing 1",
+    promise: Promise::Nothing,
+    windowed: false,
+    open: Open::Thread(|model| Box::new(Note::new(model))),
+};
+
+/// The baseline with the note's remedy for walls on one line.
+pub(in crate::report) const NOTE_FURTHEST: Contender = Contender {
+    engine: "note",
+    variant: "furthest",
+    promise: Promise::Nothing,
+    windowed: false,
+    open: Open::Thread(|model| Box::new(Note::new(model).furthest())),
+};
+
+/// The arbiter.
+pub(in crate::report) const REFERENCE: Contender = Contender {
+    engine: "reference",
+    variant: "one by one",
+    promise: Promise::Events,
+    windowed: false,
+    open: Open::Thread(|model| Box::new(Reference::new(model))),
+};
+
+/// All contenders of a bench, in the order of the report. The baseline is one of them.
+pub const CONTENDERS: [Contender; 8] = [GPU, CPU, GPU_ALL, FAST, FUNNEL, FUNNEL_FINAL, NOTE, REFERENCE];
 
 impl Contender {
     /// The engine and its variant, as messages name them.
@@ -135,7 +159,7 @@ impl Contender {
     }
 
     /// Whether it evaluates many traces at once, on all cores or in rounds of the GPU.
-    pub(super) fn takes_many(&self) -> bool {
+    pub(in crate::report) fn takes_many(&self) -> bool {
         !matches!(self.open, Open::Thread(_))
     }
 
@@ -157,7 +181,11 @@ impl Contender {
     }
 
     /// Makes the engine for `model`; `None` if it needs a GPU and there is none.
-    pub(super) fn open<'m>(&self, model: &'m Model, gear: &Gear) -> Result<Option<Box<dyn Engine + 'm>>, EngineError> {
+    pub(in crate::report) fn open<'m>(
+        &self,
+        model: &'m Model,
+        gear: &Gear,
+    ) -> Result<Option<Box<dyn Engine + 'm>>, EngineError> {
         Ok(Some(match (self.open, &gear.device) {
             (Open::Gpu(_) | Open::FastGpu, None) => return Ok(None),
             (Open::Gpu(shape), Some(device)) => Box::new(shape(Gpu::new(device.clone(), model)?, gear.window)),

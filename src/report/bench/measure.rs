@@ -188,7 +188,7 @@ fn ready<'w>(
 
 /// The order in which a repeat runs `count` contenders: another one first each time, and backwards every other time, so
 /// that none always follows the same one.
-fn order(count: usize, repeat: usize) -> impl Iterator<Item = usize> {
+pub(in crate::report) fn order(count: usize, repeat: usize) -> impl Iterator<Item = usize> {
     (0..count).map(move |i| if repeat.is_multiple_of(2) { i } else { count - 1 - i }).map(move |i| (i + repeat) % count)
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::BenchError;
 use crate::example::{BuiltIn, Walker, settled_walks};
-use crate::scene::Model;
+use crate::scene::{AnchorError, Model};
 use crate::trace::SettledTrace;
 
 /// A scene for a bench.
@@ -46,7 +46,12 @@ impl BenchScene {
         }
     }
 
-    fn model(&self, seed: u64) -> Result<Arc<Model>, BenchError> {
+    /// The scene and its anchor; `seed` decides where random walls lie.
+    ///
+    /// # Errors
+    ///
+    /// An anchor in a wall, which should not happen.
+    pub fn model(&self, seed: u64) -> Result<Arc<Model>, AnchorError> {
         Ok(match self {
             BenchScene::BuiltIn(scene) => Arc::new(Model::new(scene.scene(seed), None)?),
             BenchScene::Own { model, .. } => Arc::clone(model),

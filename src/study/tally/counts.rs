@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rustc_hash::FxHashMap as HashMap;
 use serde::{Deserialize, Serialize};
 
-use super::follow::{ends_of_steps, follow};
+use super::follow::follow;
 use super::lengths::Lengths;
 use super::ropes::Ropes;
 use super::setting::Setting;
@@ -141,7 +141,7 @@ impl Counts {
         cells: &mut HashMap<u32, [u64; 3]>,
     ) {
         let model = setting.model(record.trace);
-        let ends = ends_of_steps(trace);
+        let ends = trace.ends();
         // The limits that are exceeded at some time, and the first of them that was not yet.
         let (exceeded, mut next) = (setting.limits.partition_point(|&limit| limit < record.max_length), 0);
         let contact_cells = setting.cells.as_ref();

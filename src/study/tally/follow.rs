@@ -1,12 +1,10 @@
 //! A trace's rope from event to event.
 
-use std::borrow::Cow;
 use std::ops::Range;
 
 use glam::DVec2;
 
 use crate::rope::{Event, EventKind};
-use crate::trace::SettledTrace;
 
 /// A contact of the rope.
 #[derive(Debug, Clone, Copy)]
@@ -73,13 +71,4 @@ pub(super) fn follow(
     for gone in held {
         left(gone, if gone.again { 0 } else { steps + 1 - gone.since });
     }
-}
-
-/// Where the free end is after each step, step 0 being the move to the trace's first point.
-pub(super) fn ends_of_steps(trace: &SettledTrace) -> Cow<'_, [DVec2]> {
-    let points = trace.points();
-    if trace.is_plain() {
-        return Cow::Borrowed(points);
-    }
-    (0..points.len()).filter(|&i| trace.ends_step(i)).map(|i| points[i]).collect::<Vec<_>>().into()
 }

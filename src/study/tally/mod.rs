@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 pub(super) use batches::{Batches, Sizes};
 pub(super) use counts::{CellCounts, Counts, Touched, Traced, Wound};
 pub(super) use lengths::of_rank;
-pub(super) use moments::Moments;
+pub(crate) use moments::Moments;
 pub(super) use setting::Setting;
 
 /// The numbers of which every trace has one.

@@ -11,6 +11,7 @@ mod results;
 mod scenes;
 mod study;
 mod traces;
+mod tradeoff;
 mod usage;
 
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! The scene of a bench: a name or a file.
+//! The scene of a measurement: a name or a file.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -9,8 +9,8 @@ use tautline::example::{BuiltIn, NameError};
 use tautline::report::bench::BenchScene;
 use tautline::scene::{AnchorError, Model, read_scene};
 
-use super::super::failure::Failure;
-use super::super::input::note;
+use super::failure::Failure;
+use super::input::note;
 
 /// The scene called `name`, or the one in that file.
 pub(super) fn open(name: &str, anchor: Option<DVec2>) -> Result<BenchScene, Failure> {

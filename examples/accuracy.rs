@@ -1,0 +1,109 @@
+//! Makes the tables and diagrams of docs/accuracy.md anew, from measurements on this machine:
+//!
+//!     cargo run --release --example accuracy
+//!
+//! Everything between `<!-- NAME -->` and `<!-- end -->` in that file is replaced. Takes some minutes; the times are worth
+//! something only if nothing else runs meanwhile.
+
+use std::error::Error;
+use std::fmt::Write;
+use std::path::Path;
+use std::process::Command;
+
+use tautline::example::{BuiltIn, Walker};
+use tautline::report::bench::BenchScene;
+use tautline::report::{NoteErrors, note_errors};
+use tautline::scene::{Model, read_scene};
+
+type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+/// Where the page is, and its diagrams.
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/accuracy.md");
+
+/// The scenes of the trade-off: the name of their diagram, and what the program is told of them.
+const SCENES: [(&str, &str); 3] = [
+    ("rooms", "--scene rooms"),
+    ("aegean", "--scene tests/scenes/aegean.geojson --step 0.5"),
+    ("arena", "--scene tests/scenes/arena.map --anchor 20.5,10.5 --step 0.4"),
+];
+
+fn main() -> Result<()> {
+    let mut page = std::fs::read_to_string(PAGE)?;
+    for (name, args) in SCENES {
+        eprintln!("tradeoff: {name}");
+        replace(&mut page, &format!("tradeoff {name}"), &tradeoff(name, args)?)?;
+    }
+    eprintln!("the note");
+    replace(&mut page, "note", &note()?)?;
+    std::fs::write(PAGE, page)?;
+    Ok(())
+}
+
+/// Puts `text` between the marks of that name.
+fn replace(page: &mut String, name: &str, text: &str) -> Result<()> {
+    let mark = format!("<!-- {name} -->\n");
+    let start = page.find(&mark).ok_or_else(|| format!("{PAGE}: there is no {mark}"))? + mark.len();
+    let end = page[start..].find("<!-- end -->").ok_or_else(|| format!("{PAGE}: {mark} has no end"))?;
+    page.replace_range(start..start + end, &format!("\n{text}\n"));
+    Ok(())
+}
+
+/// The table and the diagram of a scene, by the program itself.
+fn tradeoff(name: &str, args: &str) -> Result<String> {
+    let picture = format!("accuracy/{name}.svg");
+    let out = Path::new(PAGE).with_file_name(&picture);
+    std::fs::create_dir_all(out.parent().ok_or("no folder")?)?;
+    let command = format!("tradeoff {args} --adapter software");
+    let mut program = Command::new(env!("CARGO"));
+    program.current_dir(env!("CARGO_MANIFEST_DIR")).args(["run", "--release", "--quiet", "--"]);
+    let output = program.args(command.split_whitespace()).arg("--out").arg(&out).output()?;
+    if !output.status.success() {
+        return Err(format!("{command}: {}", String::from_utf8_lossy(&output.stderr)).into());
+    }
+    let table = String::from_utf8(output.stdout)?;
+    Ok(format!("    tautline {command}\n\n![Time against error: {name}]({picture})\n\n```text\n{table}```\n"))
+}
+
+/// How often the note's listing goes wrong, by the length of a step.
+fn note() -> Result<String> {
+    let file = |name: &str, anchor: Option<[f64; 2]>| -> Result<Model> {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(name);
+        Ok(Model::new(read_scene(&path)?, anchor.map(Into::into))?)
+    };
+    let built_in = |scene: BuiltIn| -> Result<(Model, f64)> {
+        Ok((Model::new(scene.scene(1), None)?, BenchScene::BuiltIn(scene).step()))
+    };
+    let (random, random_step) = built_in(BuiltIn::Random(500))?;
+    let (lattice, lattice_step) = built_in(BuiltIn::Lattice(500))?;
+    let (rooms, rooms_step) = built_in(BuiltIn::Rooms)?;
+    let scenes = [
+        ("random-500", random, random_step),
+        ("lattice-500", lattice, lattice_step),
+        ("rooms", rooms, rooms_step),
+        ("aegean", file("aegean.geojson", None)?, 0.5),
+        ("arena", file("arena.map", Some([20.5, 10.5]))?, 0.4),
+    ];
+    let (traces, steps) = (60, 300);
+    let mut text = format!(
+        "{traces} walks of {steps} steps each. Shares of steps after which the rope is wrong, of traces in which it ever is, and of \
+         those that end with a wrong one: listing 1, then with the remedy.\n\n\
+         | scene | step | steps: listing | remedy | ever: listing | remedy | end: listing | remedy |\n\
+         |---|---|---|---|---|---|---|---|\n"
+    );
+    for (name, model, usual) in &scenes {
+        for times in [0.1, 0.3, 1.0, 3.0, 10.0] {
+            let step = usual * times;
+            let errors = note_errors(model, Walker { step, steps, seed: 1 }, traces)?;
+            write!(text, "| {name} | {} |", (step * 1e6).round() / 1e6)?;
+            let all_steps = traces * steps as u64;
+            let shares = |e: NoteErrors| [(e.steps, all_steps), (e.traces, traces), (e.ends, traces)];
+            for (listing, remedy) in shares(errors[0]).into_iter().zip(shares(errors[1])) {
+                for (wrong, all) in [listing, remedy] {
+                    write!(text, " {:.1} % |", 100.0 * wrong as f64 / all as f64)?;
+                }
+            }
+            text.push('\n');
+        }
+    }
+    Ok(text)
+}

@@ -1,0 +1,249 @@
+//! `tautline tradeoff`.
+
+mod json;
+mod table;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::anyhow;
+use glam::DVec2;
+use tautline::engine::WINDOW;
+use tautline::example::{Walker, walks};
+use tautline::gpu::Device;
+use tautline::output::WholeFile;
+use tautline::picture;
+use tautline::report::Environment;
+use tautline::report::bench::{BenchScene, Gear, Plan};
+use tautline::report::tradeoff::{Method, Setting, Tradeoff, TradeoffError, Wanted, Work, tradeoff};
+use tautline::trace::{Trace, read_traces};
+
+use super::bench::{length, open_device};
+use super::failure::Failure;
+use super::look::write_whole;
+use super::progress::runs;
+use super::{interrupt, named_scene, print, print_json};
+
+/// The seed of built-in walks and scenes unless told otherwise.
+const SEED: u64 = 1;
+
+/// Of how many points one is used, unless told otherwise.
+const STRIDES: [usize; 4] = [2, 4, 8, 16];
+
+/// By how much walls are simplified unless told otherwise, in steps of the walks that suit the scene.
+const TOLERANCES: [f64; 3] = [0.5, 2.0, 8.0];
+
+/// How wide the diagram is as PNG, in pixels.
+const WIDTH: u32 = 1920;
+
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Where the traces are: rooms, random-M or lattice-M with M walls, or a file
+    #[arg(long, value_name = "NAME|FILE", default_value = "rooms")]
+    scene: String,
+    /// Where the rope is tied in a scene file; overrides what the file says
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = named_scene::point)]
+    anchor: Option<DVec2>,
+    /// How many random walks, or a file of traces: .csv or .parquet
+    #[arg(long, value_name = "N|FILE", default_value = "10000")]
+    traces: String,
+    /// How many steps a random walk has [default: 500]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    steps: Option<u32>,
+    /// The length of a step of random walks, about, in the scene's unit [default: as of `tautline bench`]
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    step: Option<f64>,
+    /// Decides where random walls lie and walks lead [default: 1]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Use every K-th point of a trace; several with commas between them [default: 2,4,8,16]
+    #[arg(long, value_name = "K", value_delimiter = ',', value_parser = stride)]
+    stride: Option<Vec<usize>>,
+    /// Simplify walls by at most TOL; several with commas between them [default: half, 2 and 8 steps]
+    #[arg(long, value_name = "TOL", value_delimiter = ',', value_parser = tolerance)]
+    simplify: Option<Vec<f64>>,
+    /// Only this engine's methods; may be given several times
+    #[arg(long, value_name = "ENGINE", value_parser = ["gpu", "cpu", "funnel", "note", "reference"])]
+    engine: Vec<String>,
+    /// Which GPU: part of its name, or `software`
+    #[arg(long, value_name = "NAME")]
+    adapter: Option<String>,
+    /// How often every method runs at every setting
+    #[arg(long, value_name = "N", default_value = "3", value_parser = clap::value_parser!(u32).range(1..))]
+    repeats: u32,
+    /// About how long one run may take, in seconds; what takes longer runs on the first traces
+    #[arg(long, value_name = "TIME", default_value = "1", value_parser = length)]
+    seconds: f64,
+    /// Where to draw the diagram: .svg or .png
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Print one JSON document
+    #[arg(long)]
+    json: bool,
+}
+
+fn stride(text: &str) -> Result<usize, String> {
+    let number = text.trim().parse().ok().filter(|k| (1..=1 << 30).contains(k));
+    number.ok_or_else(|| "give a whole number from 1 on, such as 4".to_owned())
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|&x: &f64| x > 0.0 && x.is_finite());
+    number.ok_or_else(|| "give a number above 0, such as 0.5".to_owned())
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    interrupt::listen()?;
+    let diagram = args.out.as_deref().map(Diagram::new).transpose()?;
+    let scene = named_scene::open(&args.scene, args.anchor)?;
+    let methods = args.methods();
+    let device = args.device(&methods)?;
+    let work = args.work(&scene)?;
+    let wanted = Wanted { methods, settings: args.settings(&scene) };
+    let environment = Environment::here(device.as_ref().map(|d| d.summary().clone()));
+    let measured = args.measure(&work, &wanted, device)?;
+    if let (true, Some(first)) = (measured.points.is_empty(), measured.failed.first()) {
+        return Err(Failure::input(anyhow!("nothing could be measured: {}", first.why)));
+    }
+    if let Some(diagram) = &diagram {
+        diagram.write(&measured)?;
+    }
+    if args.json {
+        print_json(&json::report(&environment, args.seed(), &measured))
+    } else {
+        print(&table::report(&environment, args.repeats, &measured, diagram.is_none()))
+    }
+}
+
+impl Args {
+    fn seed(&self) -> u64 {
+        self.seed.unwrap_or(SEED)
+    }
+
+    fn methods(&self) -> Vec<Method> {
+        let asked = |m: &Method| self.engine.is_empty() || self.engine.iter().any(|engine| engine == m.engine());
+        Method::ALL.into_iter().filter(asked).collect()
+    }
+
+    fn device(&self, methods: &[Method]) -> Result<Option<Device>, Failure> {
+        match methods.iter().any(Method::needs_gpu) {
+            true => open_device(self.adapter.as_deref(), !self.engine.is_empty()),
+            false if self.adapter.is_some() => Err(Failure::input(anyhow!("--adapter goes with --engine gpu"))),
+            false => Ok(None),
+        }
+    }
+
+    fn settings(&self, scene: &BenchScene) -> Vec<Setting> {
+        let strides = self.stride.clone().unwrap_or_else(|| STRIDES.into());
+        let usual = || TOLERANCES.map(|steps| round(steps * self.step.unwrap_or_else(|| scene.step()))).into();
+        let tolerances: Vec<f64> = self.simplify.clone().unwrap_or_else(usual);
+        let all = strides.into_iter().map(Setting::Stride).chain(tolerances.into_iter().map(Setting::Simplify));
+        let mut settings = vec![Setting::EXACT];
+        for setting in all {
+            if !settings.contains(&setting) {
+                settings.push(setting);
+            }
+        }
+        settings
+    }
+
+    fn work(&self, scene: &BenchScene) -> Result<Work, Failure> {
+        let model = scene.model(self.seed())?;
+        let traces = match self.traces.parse::<u32>() {
+            Ok(0) => return Err(Failure::input(anyhow!("--traces 0: give at least one trace"))),
+            Ok(count) => {
+                let (step, steps) = (self.step.unwrap_or_else(|| scene.step()), self.steps.unwrap_or(500) as usize);
+                walks(&model, Walker { step, steps, seed: self.seed() }, count.into())
+            }
+            Err(_) => self.given()?,
+        };
+        Ok(Work { scene: scene.name(), model, traces })
+    }
+
+    /// The traces of a file.
+    fn given(&self) -> Result<Vec<Trace>, Failure> {
+        let walked = [self.steps.map(|_| "--steps"), self.step.map(|_| "--step"), self.seed.map(|_| "--seed")];
+        if let Some(option) = walked.into_iter().flatten().next() {
+            let what = "says how random walks are walked; the traces of a file are taken as they are";
+            return Err(Failure::input(anyhow!("{option} {what}")));
+        }
+        let path = Path::new(&self.traces);
+        let traces = read_traces(path)?;
+        match traces.is_empty() {
+            true => Err(Failure::input(anyhow!("{}: there are no traces in it", path.display()))),
+            false => Ok(traces),
+        }
+    }
+
+    /// Measures, with a bar on stderr.
+    fn measure(&self, work: &Work, wanted: &Wanted, device: Option<Device>) -> Result<Tradeoff, Failure> {
+        let gear = Gear { device, window: WINDOW };
+        let plan = Plan { repeats: self.repeats as usize, run: Duration::from_secs_f64(self.seconds) };
+        let bar = runs(1);
+        let measured = tradeoff(work, wanted, &gear, &plan, &mut |progress| {
+            bar.set_length(progress.total as u64);
+            bar.set_position(progress.done as u64);
+            let next = progress.next.map(|(method, setting)| format!("{}, {setting}", method.name));
+            bar.set_message(next.unwrap_or_else(|| "checking traces, simplifying walls".to_owned()));
+        });
+        bar.finish_and_clear();
+        measured.map_err(|error| match error {
+            TradeoffError::Engine(error) => error.into(),
+            TradeoffError::Violation(violation) => Failure::input(anyhow!("{}: {violation}", self.traces)),
+            TradeoffError::Disagreement(_) => Failure::internal(error.into()),
+        })
+    }
+}
+
+/// To one digit, 1, 2 or 5.
+fn round(x: f64) -> f64 {
+    let tens = 10f64.powf(x.log10().floor());
+    let unit = [1.0, 2.0, 5.0, 10.0].into_iter().min_by(|a, b| (a - x / tens).abs().total_cmp(&(b - x / tens).abs()));
+    // By way of text, so that it is the number that its digits say.
+    format!("{:e}", unit.unwrap_or(1.0) * tens).parse().unwrap_or(x)
+}
+
+/// Where the diagram goes.
+struct Diagram {
+    path: PathBuf,
+    is_png: bool,
+}
+
+impl Diagram {
+    /// Checks, before anything is measured, that the file can be written. Leaves nothing behind.
+    fn new(path: &Path) -> Result<Self, Failure> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        let is_png = match extension.as_str() {
+            "svg" => false,
+            "png" => true,
+            _ => {
+                let shown = path.display();
+                return Err(Failure::input(anyhow!("{shown}: diagrams are drawn as .svg or .png")));
+            }
+        };
+        WholeFile::create(path).map(drop)?;
+        Ok(Diagram { path: path.to_owned(), is_png })
+    }
+
+    fn write(&self, measured: &Tradeoff) -> Result<(), Failure> {
+        let svg = picture::tradeoff(measured);
+        let bytes = match self.is_png {
+            true => picture::png(&svg, WIDTH).map_err(|e| Failure::internal(e.into()))?,
+            false => svg.into_bytes(),
+        };
+        write_whole(&self.path, &bytes)?;
+        eprintln!("wrote {}", self.path.display());
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::round;
+
+    #[test]
+    fn tolerances_are_round() {
+        let rounded = [0.005, 0.02, 0.43, 1.7, 6.9, 8.0, 96.0, 1e-9].map(round);
+        assert_eq!(rounded, [0.005, 0.02, 0.5, 2.0, 5.0, 10.0, 100.0, 1e-9]);
+    }
+}

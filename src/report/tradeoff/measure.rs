@@ -1,0 +1,301 @@
+//! The measuring itself: every method at every setting, interleaved and repeated.
+
+use std::time::{Duration, Instant};
+
+use super::method::Method;
+use super::pareto::mark;
+use super::setting::{Setting, Variant, Work};
+use super::truth::{Answer, Score, Truth};
+use super::{TradeoffError, Wanted};
+use crate::engine::{EngineError, Job};
+use crate::report::Spread;
+use crate::report::bench::{Gear, Plan, order};
+use crate::rope::{Status, TraceRecord};
+use crate::trace::SettledTrace;
+
+/// How many traces engines that evaluate many at once are first given, to see how long they take.
+const FIRST: usize = 64;
+
+/// By how much a sample grows at most while the right size is looked for.
+const GROWTH: f64 = 8.0;
+
+/// What part of a run's time a run should last at least; shorter ones are done several times over.
+const SHORTEST: f64 = 0.1;
+
+/// How often a sample is evaluated in one run at most.
+const MOST_TIMES: usize = 10_000;
+
+/// How far a measurement is.
+pub struct Progress {
+    /// Runs done.
+    pub done: usize,
+    /// Runs in all.
+    pub total: usize,
+    /// What runs next; `None` while the work is being made ready.
+    pub next: Option<(Method, Setting)>,
+}
+
+/// One method at one setting: what it costs and what it gets wrong.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// The method's name.
+    pub method: &'static str,
+    /// The engine's, as the command line knows it.
+    pub engine: &'static str,
+    /// What was traded besides.
+    pub setting: Setting,
+    /// The number of vertices of the scene as it was used.
+    pub n: usize,
+    /// On how many traces it ran: all, or the first.
+    pub traces: usize,
+    /// How many steps these have, before any are left out.
+    pub steps: u64,
+    /// The time of each of these steps, in nanoseconds, over the repeats: of the engine alone.
+    pub ns_per_step: Spread,
+    /// How many of the coarser steps would have jumped a wall, and were walked point by point.
+    pub jumps: usize,
+    /// How many of the traces cross a simplified wall.
+    pub crossing_traces: usize,
+    /// On how many traces the list of events differs; `None` for a method that keeps none.
+    pub event_mismatch: Option<usize>,
+    /// On how many the taut rope at the end does.
+    pub final_mismatch: usize,
+    /// The error of the length at the end as a share of it, over the traces.
+    pub length_error: LengthError,
+    /// The mean length at the end.
+    pub length: Answer,
+    /// The mean number of wraps a trace; `None` for a method that keeps no events.
+    pub wraps: Option<Answer>,
+    /// Whether no other point is faster and as right, or as fast and more right: by the median time, the share of wrong ropes at
+    /// the end, and the mean error of the length.
+    pub pareto: bool,
+}
+
+impl Point {
+    /// The share of the traces of which that many are.
+    pub fn share(&self, traces: usize) -> f64 {
+        traces as f64 / self.traces as f64
+    }
+}
+
+/// The error of a length, as a share of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LengthError {
+    /// Over the traces.
+    pub mean: f64,
+    /// Of the worst.
+    pub max: f64,
+}
+
+/// What could not be measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Failed {
+    /// The method's name, or `all`.
+    pub method: &'static str,
+    /// At which setting; `None` for all.
+    pub setting: Option<Setting>,
+    /// Why.
+    pub why: String,
+}
+
+/// What came of it.
+pub struct Tradeoff {
+    /// What reports call the scene.
+    pub scene: String,
+    /// The number of its vertices.
+    pub n: usize,
+    /// How many traces there are, and how many steps they have.
+    pub traces: usize,
+    /// See [`traces`](Self::traces).
+    pub steps: u64,
+    /// For how many traces, from the first on, the scalar reference itself vouched for the truth; for the others the engine
+    /// `cpu` did, which gave the same records for these.
+    pub vouched: usize,
+    /// By method, then by setting.
+    pub points: Vec<Point>,
+    /// What failed.
+    pub failed: Vec<Failed>,
+}
+
+/// A method at a setting, and its runs so far.
+struct Lane<'v> {
+    method: Method,
+    variant: &'v Variant,
+    /// On how many of the traces it runs.
+    traces: usize,
+    /// How often it evaluates them in one run.
+    times: usize,
+    ns: Vec<f64>,
+    score: Option<Score>,
+    crossing_traces: usize,
+}
+
+/// Runs the wanted methods at the wanted settings on `work`. Calls `watch` before every run.
+///
+/// Every repeat runs all of them once, in changing order, each with an engine made anew and warmed up. Takes about
+/// `methods * settings * (repeats + 1)` runs' time, and holds the traces once for every setting.
+///
+/// # Errors
+///
+/// A trace that crosses a wall, an engine that fails, and exact methods that differ. What a method or a setting cannot take is
+/// listed in [`Tradeoff::failed`].
+pub fn tradeoff(
+    work: &Work,
+    wanted: &Wanted,
+    gear: &Gear,
+    plan: &Plan,
+    watch: &mut dyn FnMut(Progress),
+) -> Result<Tradeoff, TradeoffError> {
+    let (mut done, total) = (0, wanted.methods.len() * (1 + wanted.settings.len()) * (1 + plan.repeats));
+    watch(Progress { done, total, next: None });
+    let mut failed = Vec::new();
+    let variants = variants(work, &wanted.settings, &mut failed)?;
+    let truth = Truth::of(&variants[0])?;
+    let mut next = |lane: &Lane| {
+        watch(Progress { done, total, next: Some((lane.method, lane.variant.setting)) });
+        done += 1;
+    };
+    let mut lanes = Vec::new();
+    for &method in &wanted.methods {
+        for variant in variants.iter().filter(|v| method.engine() != "reference" || v.setting == Setting::EXACT) {
+            let mut lane = Lane::new(method, variant);
+            next(&lane);
+            match lane.calibrate(gear, plan.run) {
+                Ok(true) => lanes.push(lane),
+                Ok(false) => failed.push(lane.failed("there is no GPU".to_owned())),
+                Err(EngineError::Unfit { why, .. }) => failed.push(lane.failed(why)),
+                Err(other) => return Err(other.into()),
+            }
+        }
+    }
+    for repeat in 0..plan.repeats {
+        for i in order(lanes.len(), repeat) {
+            next(&lanes[i]);
+            lanes[i].repeat(gear, &truth)?;
+        }
+    }
+    let mut points: Vec<Point> = lanes.iter().filter_map(Lane::point).collect();
+    mark(&mut points);
+    let exact = &variants[0];
+    Ok(Tradeoff {
+        scene: work.scene.clone(),
+        n: work.model.vertices().len(),
+        traces: exact.traces.len(),
+        steps: exact.steps.iter().sum(),
+        vouched: truth.vouched,
+        points,
+        failed,
+    })
+}
+
+/// The work as it is, then as each setting has it.
+fn variants(work: &Work, settings: &[Setting], failed: &mut Vec<Failed>) -> Result<Vec<Variant>, TradeoffError> {
+    let mut variants = vec![Variant::exact(work)?];
+    for &setting in settings.iter().filter(|&&s| s != Setting::EXACT) {
+        match Variant::new(work, setting) {
+            Ok(variant) if matches!(setting, Setting::Simplify(_)) && variant.is_like(&variants[0]) => {
+                let why = "it leaves no wall end out in this scene".to_owned();
+                failed.push(Failed { method: "all", setting: Some(setting), why });
+            }
+            Ok(variant) => variants.push(variant),
+            Err(error) => failed.push(Failed { method: "all", setting: Some(setting), why: error.to_string() }),
+        }
+    }
+    Ok(variants)
+}
+
+/// One run: how long it took, and what came out.
+struct Run {
+    took: Duration,
+    records: Vec<TraceRecord>,
+}
+
+impl<'v> Lane<'v> {
+    fn new(method: Method, variant: &'v Variant) -> Self {
+        let first = if method.takes_many() { FIRST } else { 1 };
+        let traces = first.min(variant.traces.len());
+        Lane { method, variant, traces, times: 1, ns: Vec::new(), score: None, crossing_traces: 0 }
+    }
+
+    fn failed(&self, why: String) -> Failed {
+        Failed { method: self.method.name, setting: Some(self.variant.setting), why }
+    }
+
+    /// Finds out how many traces take about as long as `run`; false if there is no GPU for it.
+    fn calibrate(&mut self, gear: &Gear, run: Duration) -> Result<bool, EngineError> {
+        let (wanted, all) = (run.as_secs_f64(), self.variant.traces.len());
+        loop {
+            let Some(Run { took, .. }) = self.run(gear)? else { return Ok(false) };
+            let took = took.as_secs_f64().max(1e-9);
+            if self.traces == all || took >= wanted / 2.0 {
+                if took > wanted {
+                    self.traces = ((self.traces as f64 * wanted / took) as usize).max(1);
+                } else {
+                    self.times = ((SHORTEST * wanted / took).ceil() as usize).clamp(1, MOST_TIMES);
+                }
+                return Ok(true);
+            }
+            self.traces = ((self.traces as f64 * (wanted / took).clamp(2.0, GROWTH)) as usize).min(all);
+        }
+    }
+
+    /// Evaluates the sample once, on an engine that is made and warmed up before the clock starts.
+    fn run(&self, gear: &Gear) -> Result<Option<Run>, EngineError> {
+        let traces = &self.variant.traces[..self.traces];
+        let Some(mut engine) = self.method.open(&self.variant.model, gear)? else { return Ok(None) };
+        if self.method.takes_many() {
+            engine.evaluate(&traces[..FIRST.min(traces.len())], &Job::new())?;
+        }
+        let (mut took, mut records) = (Duration::ZERO, Vec::new());
+        for _ in 0..self.times {
+            engine.forget();
+            let start = Instant::now();
+            let given = engine.evaluate(traces, &Job::new())?;
+            took += start.elapsed();
+            // Freeing the ones before is no part of the time.
+            records = given;
+        }
+        Ok(Some(Run { took, records }))
+    }
+
+    /// Runs once more, and the first time looks at what comes out.
+    fn repeat(&mut self, gear: &Gear, truth: &Truth) -> Result<(), TradeoffError> {
+        let Some(Run { took, records }) = self.run(gear)? else { return Ok(()) };
+        self.ns.push(took.as_nanos() as f64 / (self.steps() * self.times as u64).max(1) as f64);
+        if self.score.is_none() {
+            let broken = (self.variant.setting == Setting::EXACT).then(|| truth.broken(&self.method, &records));
+            if let Some(disagreement) = broken.flatten() {
+                return Err(disagreement.into());
+            }
+            self.crossing_traces = records.iter().filter(|r| r.status == Status::Violation).count();
+            self.score = Some(truth.score(self.variant, &records));
+        }
+        Ok(())
+    }
+
+    /// How many steps its traces have before any are left out.
+    fn steps(&self) -> u64 {
+        self.variant.steps[..self.traces].iter().sum()
+    }
+
+    fn point(&self) -> Option<Point> {
+        let (score, has_events) = (self.score.as_ref()?, self.method.has_events());
+        Some(Point {
+            method: self.method.name,
+            engine: self.method.engine(),
+            setting: self.variant.setting,
+            n: self.variant.model.vertices().len(),
+            traces: self.traces,
+            steps: self.steps(),
+            ns_per_step: Spread::of(self.ns.iter().copied())?,
+            jumps: self.variant.traces[..self.traces].iter().map(SettledTrace::jumps).sum(),
+            crossing_traces: self.crossing_traces,
+            event_mismatch: has_events.then_some(score.event_mismatch),
+            final_mismatch: score.final_mismatch,
+            length_error: LengthError { mean: score.length_error.mean, max: score.length_error.max },
+            length: score.length.answer(),
+            wraps: has_events.then(|| score.wraps.answer()),
+            pareto: false,
+        })
+    }
+}

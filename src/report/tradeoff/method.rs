@@ -1,0 +1,64 @@
+//! What is compared: every way to turn traces into ropes.
+
+use crate::engine::{Engine, EngineError};
+use crate::report::bench::{
+    CPU, Contender, FAST, FUNNEL, FUNNEL_FINAL, GPU, Gear, NOTE, NOTE_FURTHEST, Promise, REFERENCE,
+};
+use crate::scene::Model;
+
+/// A way to turn traces into ropes.
+#[derive(Clone, Copy)]
+pub struct Method {
+    /// Its name in reports.
+    pub name: &'static str,
+    contender: Contender,
+}
+
+impl Method {
+    /// All methods, in the order of the report.
+    pub const ALL: [Method; 8] = [
+        Method { name: "gpu certified", contender: GPU },
+        Method { name: "gpu fast", contender: FAST },
+        Method { name: "cpu certified", contender: CPU },
+        Method { name: "funnel, every step", contender: FUNNEL },
+        Method { name: "funnel, final rope", contender: FUNNEL_FINAL },
+        Method { name: "note, listing 1", contender: NOTE },
+        Method { name: "note, furthest", contender: NOTE_FURTHEST },
+        Method { name: "reference", contender: REFERENCE },
+    ];
+
+    /// The engine's name, as the command line knows it.
+    pub fn engine(&self) -> &'static str {
+        self.contender.engine
+    }
+
+    /// Whether it cannot do without a GPU.
+    pub fn needs_gpu(&self) -> bool {
+        self.contender.needs_gpu()
+    }
+
+    /// Whether it writes down what happens on the way.
+    pub(super) fn has_events(&self) -> bool {
+        self.contender.variant != FUNNEL_FINAL.variant
+    }
+
+    /// Whether it promises the reference's events.
+    pub(super) fn promises_events(&self) -> bool {
+        self.contender.promise == Promise::Events
+    }
+
+    /// Whether it promises the reference's taut ropes.
+    pub(super) fn promises_ropes(&self) -> bool {
+        self.contender.promise != Promise::Nothing
+    }
+
+    /// Whether it evaluates many traces at once.
+    pub(super) fn takes_many(&self) -> bool {
+        self.contender.takes_many()
+    }
+
+    /// Makes the engine for `model`; `None` if it needs a GPU and there is none.
+    pub(super) fn open<'m>(&self, model: &'m Model, gear: &Gear) -> Result<Option<Box<dyn Engine + 'm>>, EngineError> {
+        self.contender.open(model, gear)
+    }
+}

@@ -1,0 +1,110 @@
+//! What is traded, and the work as each setting has it.
+
+use std::fmt;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::TradeoffError;
+use crate::scene::Model;
+use crate::simplify::{SimplifyError, simplify};
+use crate::trace::{SettledTrace, Trace, settle_strided};
+
+/// How much accuracy is given for speed, whatever the method.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Setting {
+    /// Every so many points of a trace are used, at least 1; 1 gives nothing away.
+    Stride(usize),
+    /// Walls are simplified by at most that much, in the scene's unit.
+    Simplify(f64),
+}
+
+impl Setting {
+    /// All points of all traces among all walls.
+    pub const EXACT: Setting = Setting::Stride(1);
+
+    /// Every so many points are used.
+    pub fn stride(self) -> usize {
+        match self {
+            Setting::Stride(k) => k,
+            Setting::Simplify(_) => 1,
+        }
+    }
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Setting::Stride(k) => write!(f, "stride {k}"),
+            Setting::Simplify(tolerance) => write!(f, "simplify {tolerance}"),
+        }
+    }
+}
+
+/// A scene and traces in it, as they are.
+pub struct Work {
+    /// What reports call the scene.
+    pub scene: String,
+    /// The scene and its anchor.
+    pub model: Arc<Model>,
+    /// The traces; none crosses a wall.
+    pub traces: Vec<Trace>,
+}
+
+impl Work {
+    fn steps(&self) -> Vec<u64> {
+        self.traces.iter().map(|trace| trace.points.len() as u64 - 1).collect()
+    }
+}
+
+/// The work as a setting has it.
+pub(super) struct Variant {
+    pub setting: Setting,
+    pub model: Arc<Model>,
+    pub traces: Vec<SettledTrace>,
+    /// How many steps each trace has before any are left out.
+    pub steps: Vec<u64>,
+}
+
+impl Variant {
+    /// The work with all points and walls.
+    ///
+    /// # Errors
+    ///
+    /// The first trace that breaks the rules.
+    pub(super) fn exact(work: &Work) -> Result<Self, TradeoffError> {
+        let traces: Vec<SettledTrace> = settled(&work.model, &work.traces, 1);
+        match traces.iter().find_map(SettledTrace::violation) {
+            Some(violation) => Err((*violation).into()),
+            None => {
+                Ok(Variant { setting: Setting::EXACT, model: Arc::clone(&work.model), traces, steps: work.steps() })
+            }
+        }
+    }
+
+    /// Whether it has as many vertices as `other`.
+    pub(super) fn is_like(&self, other: &Variant) -> bool {
+        self.model.vertices().len() == other.model.vertices().len()
+    }
+
+    /// The work as `setting` has it.
+    ///
+    /// # Errors
+    ///
+    /// A scene that cannot be simplified.
+    pub(super) fn new(work: &Work, setting: Setting) -> Result<Self, SimplifyError> {
+        let model = match setting {
+            Setting::Stride(_) => Arc::clone(&work.model),
+            Setting::Simplify(tolerance) => {
+                let anchor = work.model.anchor();
+                Arc::new(Model::new(simplify(work.model.scene(), &[anchor], tolerance)?, Some(anchor))?)
+            }
+        };
+        let traces = settled(&model, &work.traces, setting.stride());
+        Ok(Variant { setting, model, traces, steps: work.steps() })
+    }
+}
+
+fn settled(model: &Model, traces: &[Trace], stride: usize) -> Vec<SettledTrace> {
+    traces.par_iter().map(|trace| settle_strided(model, trace.clone(), stride)).collect()
+}
