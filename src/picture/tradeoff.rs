@@ -4,7 +4,7 @@ use super::colour::{BLUE, GRID, INK, MUTED, VERMILION};
 use super::label::width;
 use super::svg::{Align, Svg};
 use super::ticks::Ticks;
-use crate::report::tradeoff::{Point, Setting, Tradeoff};
+use crate::report::tradeoff::{Method, Point, Setting, Tradeoff};
 
 /// How wide the whole is, and what stands above the panels.
 const WIDTH: f64 = 1080.0;
@@ -18,7 +18,7 @@ const STRIP: f64 = 64.0;
 
 /// The colours of methods, in their order, of the eight of M. Okabe and K. Ito (see `colour.rs`) but the yellow, which is
 /// too light for white paper.
-const COLOURS: [&str; 8] = [BLUE, "#56b4e9", VERMILION, "#009e73", "#cc79a7", "#000", "#8a8a8a", "#e69f00"];
+const COLOURS: [&str; Method::ALL.len()] = [BLUE, "#56b4e9", VERMILION, "#009e73", "#cc79a7", "#000", "#8a8a8a", "#e69f00"];
 
 /// What one panel shows along its lower axis.
 struct Measure {
@@ -100,11 +100,10 @@ fn legend(svg: &mut Svg, points: &[Point]) {
     }
 }
 
-/// Each method once, with its colour.
-fn methods(points: &[Point]) -> Vec<(&'static str, &'static str)> {
-    let mut methods: Vec<&str> = points.iter().map(|p| p.method).collect();
-    methods.dedup();
-    methods.into_iter().zip(COLOURS.into_iter().cycle()).collect()
+/// Each method that is there, with its colour, which is the same in all diagrams.
+fn methods(points: &[Point]) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let all = Method::ALL.into_iter().map(|method| method.name).zip(COLOURS);
+    all.filter(|(method, _)| points.iter().any(|p| p.method == *method))
 }
 
 /// The mark of a setting in a colour, about a point.
@@ -209,7 +208,7 @@ impl<'a> Panel<'a> {
             let to = self.x.at(noise);
             svg.rect([self.x.from, top], [to - self.x.from, bottom - top], "fill=\"#e8f1e4\"");
             let style = format!("font-size=\"11\" fill=\"{MUTED}\"");
-            svg.text([to - 6.0, top + 14.0], Align::End, &style, "less than the sample leaves open");
+            svg.text([self.x.from + 6.0, top + 14.0], Align::Start, &style, "green: less than the sample leaves open");
         }
         for (value, name) in &self.y.ticks().marks {
             let y = self.y.at(*value);
