@@ -2,7 +2,6 @@
 
 use std::ops::{Range, RangeInclusive};
 use std::panic::resume_unwind;
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
@@ -10,10 +9,11 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use tautline::example::{Walker, some_walks};
 use tautline::scene::Model;
-use tautline::trace::{SettledTrace, Trace, TraceReader, settle_owned};
+use tautline::trace::{SettledTrace, Trace, TraceReader, settle_strided};
 
 use super::failure::Failure;
 use super::interrupt;
+use super::trade::Terms;
 
 /// How many points the traces of a batch have together at most. A batch of long traces has fewer of them, so that memory
 /// stays bounded: 64 MB of points for each of the two batches under way: one that is read and checked, one that is
@@ -31,6 +31,7 @@ pub(crate) enum Source {
 }
 
 impl Source {
+    /// The next traces, drawn in `model` if they are not in a file.
     fn next(&mut self, model: &Model, traces: usize) -> Result<Option<Vec<Trace>>, Failure> {
         let points = (512 * traces).clamp(*POINTS.start(), *POINTS.end());
         match self {
@@ -80,11 +81,11 @@ pub(crate) struct Batches {
 impl Batches {
     /// Begins to read batches of at most `traces` traces. The thread ends with the source, with the first error, or when nobody waits any more; it is not
     /// waited for then, since reading from a pipe may take for ever.
-    pub(crate) fn start(source: Source, model: Arc<Model>, traces: usize) -> Self {
+    pub(crate) fn start(source: Source, terms: Terms, traces: usize) -> Self {
         let size = source.size();
         // Without room in between: a batch that is ready waits in the thread, and the one after it is not read yet.
         let (ready, waiting) = sync_channel(0);
-        let thread = spawn(move || prepare(source, &model, traces, &ready));
+        let thread = spawn(move || prepare(source, &terms, traces, &ready));
         Batches { waiting, thread: Some(thread), size }
     }
 
@@ -111,12 +112,13 @@ impl Batches {
     }
 }
 
-fn prepare(mut source: Source, model: &Model, traces: usize, ready: &SyncSender<Result<Batch, Failure>>) {
+fn prepare(mut source: Source, terms: &Terms, traces: usize, ready: &SyncSender<Result<Batch, Failure>>) {
     loop {
         let start = Instant::now();
-        let batch = match source.next(model, traces) {
+        let batch = match source.next(&terms.given, traces) {
             Ok(Some(traces)) => {
-                let settled = traces.into_par_iter().map(|trace| settle_owned(model, trace)).collect();
+                let settle = |trace| settle_strided(&terms.used, trace, terms.stride);
+                let settled = traces.into_par_iter().map(settle).collect();
                 Ok(Batch { settled, position: source.position(), prepared: start.elapsed() })
             }
             Ok(None) => return,

@@ -1,14 +1,12 @@
 //! `tautline check`.
 
-use std::sync::Arc;
-
 use serde_json::json;
-use tautline::scene::Model;
 use tautline::trace::{Violation, ViolationKind};
 
 use super::batches::Batches;
 use super::failure::Failure;
 use super::input::InputArgs;
+use super::trade::Terms;
 use super::{interrupt, print, print_json};
 
 /// How many traces are checked at a time.
@@ -25,11 +23,12 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     interrupt::listen()?;
-    let model = Arc::new(args.input.model()?);
+    let terms = Terms::exact(args.input.model()?);
+    let model = &terms.given;
     let scene = model.scene();
     let counts = match args.input.traces {
         None if args.input.scene.is_some() => None,
-        _ => Some(count(args, &model)?),
+        _ => Some(count(args, &terms)?),
     };
     let anchor = model.anchor();
     if args.json {
@@ -72,8 +71,8 @@ struct Counts {
 }
 
 /// Reads all traces, batch by batch.
-fn count(args: &Args, model: &Arc<Model>) -> Result<Counts, Failure> {
-    let mut batches = Batches::start(args.input.source()?, model.clone(), TRACES);
+fn count(args: &Args, terms: &Terms) -> Result<Counts, Failure> {
+    let mut batches = Batches::start(args.input.source()?, terms.clone(), TRACES);
     let mut violations = args.input.violations();
     let mut counts = Counts::default();
     while let Some(batch) = batches.next()? {

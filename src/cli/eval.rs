@@ -17,6 +17,7 @@ use super::interrupt::{self, Writing};
 use super::output::Output;
 use super::progress::{Progress, with_progress};
 use super::summary::{Summary, Times};
+use super::trade::TradeArgs;
 use super::{print, print_json};
 
 #[derive(Debug, clap::Args)]
@@ -31,6 +32,8 @@ pub(crate) struct Args {
     events: Option<PathBuf>,
     #[command(flatten)]
     engine: EngineArgs,
+    #[command(flatten)]
+    trade: TradeArgs,
     /// Print the summary as one JSON document
     #[arg(long)]
     json: bool,
@@ -44,15 +47,19 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     check_outputs(args)?;
     writing.end()?;
     let start = Instant::now();
-    let model = Arc::new(args.input.model()?);
+    let terms = args.trade.terms(&args.input.name(), args.input.model()?)?;
+    let model = &terms.used;
     if model.scene().dropped() > 0 {
         eprintln!("note: {} walls of zero length were dropped", model.scene().dropped());
     }
     let source = args.input.source()?;
-    let (mut engine, on) = args.engine.open(&model)?;
-    let batches = Batches::start(source, model.clone(), engine.batch());
-    let mut summary = Summary::new(&args.input.name(), &model, &*engine, on);
-    let mut times = evaluate(args, &model, batches, &mut *engine, &mut summary)?;
+    let (mut engine, on) = args.engine.open(model)?;
+    let batches = Batches::start(source, terms.clone(), engine.batch());
+    let mut summary = Summary::new(&args.input.name(), &terms.given, &*engine, on);
+    if args.trade.is_any() {
+        summary.trade(args.trade, model);
+    }
+    let mut times = evaluate(args, model, batches, &mut *engine, &mut summary)?;
     times.total = start.elapsed();
     if args.json { print_json(&summary.json(&times)) } else { print(&summary.table(&times, args.out.is_none())) }
 }
@@ -69,17 +76,22 @@ fn evaluate(
     interrupt::stops(&job);
     let mut times = Times::default();
     let mut violations = args.input.violations();
-    let mut output = Output::new(args.out.as_deref(), args.events.as_deref(), model);
+    // Simplified walls may be in the way of traces that kept clear of them as they were: these are marked.
+    let is_strict = args.trade.simplify.is_none() || args.input.flags_violations();
+    let notes = args.trade.notes(engine.precision());
+    let mut output = Output::new(args.out.as_deref(), args.events.as_deref(), model, notes);
     let progress = Progress::new(batches.size());
     with_progress(&progress, &job, || {
         while let Some(Batch { settled, position, prepared }) = batches.next()? {
-            violations.take(&settled)?;
+            if is_strict {
+                violations.take(&settled)?;
+            }
             progress.begin(position, settled.iter().map(|t| t.steps() as u64).sum());
             times.prepared += prepared;
             let start = Instant::now();
             let records = engine.evaluate(&settled, &job)?;
             times.evaluated += start.elapsed();
-            summary.add(&records);
+            summary.add(&settled, &records);
             output.write(records)?;
         }
         violations.finish();

@@ -129,6 +129,11 @@ impl InputArgs {
         }
     }
 
+    /// Whether traces that cross walls are marked and warned of.
+    pub(crate) fn flags_violations(&self) -> bool {
+        self.on_violation == OnViolation::Flag
+    }
+
     /// What is to be done with traces that cross walls; none so far.
     pub(crate) fn violations(&self) -> Violations {
         let file = self.traces.as_deref().map_or(String::new(), |p| format!("{}: ", p.display()));

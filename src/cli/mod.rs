@@ -21,6 +21,7 @@ mod progress;
 mod spread;
 mod study;
 mod summary;
+mod trade;
 mod tradeoff;
 mod violations;
 

@@ -23,6 +23,8 @@ pub(crate) struct Output {
     out: Option<PathBuf>,
     events: Option<PathBuf>,
     model: Arc<Model>,
+    /// What is noted in a Parquet file of results.
+    notes: Vec<(&'static str, String)>,
     running: Option<Running>,
 }
 
@@ -39,8 +41,14 @@ type Written = (Vec<WholeFile>, Duration);
 
 impl Output {
     /// Results go to `out`, events to `events`, where they are asked for.
-    pub(crate) fn new(out: Option<&Path>, events: Option<&Path>, model: &Arc<Model>) -> Self {
-        Output { out: out.map(Path::to_owned), events: events.map(Path::to_owned), model: model.clone(), running: None }
+    pub(crate) fn new(
+        out: Option<&Path>,
+        events: Option<&Path>,
+        model: &Arc<Model>,
+        notes: Vec<(&'static str, String)>,
+    ) -> Self {
+        let [out, events] = [out, events].map(|path| path.map(Path::to_owned));
+        Output { out, events, model: model.clone(), notes, running: None }
     }
 
     /// Takes the next records, and waits while those before are being written. Errors of earlier records are found here.
@@ -71,7 +79,8 @@ impl Output {
             interrupt::check()?;
             let (sender, records) = sync_channel(0);
             let (out, events, model) = (self.out.clone(), self.events.clone(), self.model.clone());
-            let thread = spawn(move || write_all(out.as_deref(), events.as_deref(), &model, &records));
+            let notes = self.notes.clone();
+            let thread = spawn(move || write_all(out.as_deref(), events.as_deref(), &model, &notes, &records));
             self.running = Some(Running { sender: Some(sender), thread: Some(thread), _writing: writing });
         }
         Ok(self.running.as_mut().expect("it has just begun"))
@@ -102,11 +111,15 @@ fn write_all(
     out: Option<&Path>,
     events: Option<&Path>,
     model: &Model,
+    notes: &[(&str, String)],
     records: &Receiver<Vec<TraceRecord>>,
 ) -> Result<Written, Failure> {
     let mut took = Duration::ZERO;
     let mut out = out.map(ResultWriter::create).transpose()?;
     let mut events = events.map(EventWriter::create).transpose()?;
+    if let Some(out) = &mut out {
+        notes.iter().for_each(|(key, value)| out.note(key, value));
+    }
     for records in records {
         let start = Instant::now();
         for records in records.chunks(RECORDS) {

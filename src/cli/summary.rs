@@ -7,7 +7,11 @@ use tautline::engine::{Engine, Precision};
 use tautline::rope::{EventKind, Status, TraceRecord};
 use tautline::scene::Model;
 
+use tautline::study::Traded;
+use tautline::trace::SettledTrace;
+
 use super::spread::{Counts, Lengths, Spread};
+use super::trade::{TradeArgs, words};
 
 /// A run in numbers.
 pub(crate) struct Summary {
@@ -22,6 +26,7 @@ pub(crate) struct Summary {
     traces: u64,
     steps: u64,
     violations: u64,
+    traded: Option<(TradeArgs, Traded)>,
     wraps: u64,
     unwraps: u64,
     length: Lengths,
@@ -94,6 +99,7 @@ impl Summary {
             traces: 0,
             steps: 0,
             violations: 0,
+            traded: None,
             wraps: 0,
             unwraps: 0,
             length: Lengths::default(),
@@ -103,8 +109,21 @@ impl Summary {
         }
     }
 
-    /// Counts the next records in.
-    pub(crate) fn add(&mut self, records: &[TraceRecord]) {
+    /// What was traded, and the scene as ropes see it.
+    pub(crate) fn trade(&mut self, trade: TradeArgs, used: &Model) {
+        let (vertices, vertices_left) = (self.vertices as u64, used.vertices().len() as u64);
+        self.traded = Some((trade, Traded { vertices, vertices_left, ..Traded::default() }));
+    }
+
+    /// Counts the next traces and their records in.
+    pub(crate) fn add(&mut self, settled: &[SettledTrace], records: &[TraceRecord]) {
+        if let Some((_, traded)) = &mut self.traded {
+            for trace in settled {
+                traded.jumps += trace.jumps() as u64;
+                traded.crossing_traces += u64::from(trace.violation().is_some());
+                traded.crossing_steps += trace.violations() as u64;
+            }
+        }
         for record in records {
             let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count();
             self.traces += 1;
@@ -140,6 +159,9 @@ impl Summary {
             self.precision,
             self.on,
         );
+        if let Some((trade, traded)) = &self.traded {
+            text += &format!("traded   {}\n", words(trade.stride.unwrap_or(1), trade.simplify, traded));
+        }
         if self.violations > 0 {
             text += &format!("crossing {} traces cross walls and are marked\n", grouped(self.violations));
         }
@@ -170,6 +192,11 @@ impl Summary {
         json!({
             "scene": {"name": self.scene, "walls": self.walls, "vertices": self.vertices, "dropped": self.dropped, "anchor": self.anchor},
             "engine": self.engine, "precision": self.precision, "on": self.on, "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
+            "traded": self.traded.as_ref().map(|(trade, traded)| json!({
+                "stride": trade.stride.unwrap_or(1), "simplify": trade.simplify,
+                "vertices_left": traded.vertices_left, "jumps": traded.jumps,
+                "crossing_traces": traded.crossing_traces, "crossing_steps": traded.crossing_steps,
+            })),
             "traces": self.traces, "steps": self.steps, "violations": self.violations,
             "wraps": self.wraps, "unwraps": self.unwraps,
             "length": self.length.spread().json(), "max_length": self.max_length.spread().json(),

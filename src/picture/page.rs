@@ -61,8 +61,15 @@ fn facts(summary: &Summary) -> String {
         ("ended", stopped.into()),
         ("identity", summary.identity.clone()),
     ];
+    let traded = summary.traded.iter().flat_map(|traded| {
+        [
+            ("wall ends left", format!("{} of {}", count(traded.vertices_left), count(traded.vertices))),
+            ("longer steps not taken", count(traded.jumps)),
+            ("crossing a simplified wall", format!("{} traces", count(traded.crossing_traces))),
+        ]
+    });
     let mut out = String::from("<dl>\n");
-    for (name, value) in facts {
+    for (name, value) in facts.into_iter().chain(traded) {
         let _ = writeln!(out, "<div><dt>{name}</dt><dd>{}</dd></div>", escape(&value));
     }
     out.push_str("</dl>\n");

@@ -18,7 +18,8 @@ const STRIP: f64 = 64.0;
 
 /// The colours of methods, in their order, of the eight of M. Okabe and K. Ito (see `colour.rs`) but the yellow, which is
 /// too light for white paper.
-const COLOURS: [&str; Method::ALL.len()] = [BLUE, "#56b4e9", VERMILION, "#009e73", "#cc79a7", "#000", "#8a8a8a", "#e69f00"];
+const COLOURS: [&str; Method::ALL.len()] =
+    [BLUE, "#56b4e9", VERMILION, "#009e73", "#cc79a7", "#000", "#8a8a8a", "#e69f00"];
 
 /// What one panel shows along its lower axis.
 struct Measure {

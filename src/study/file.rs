@@ -119,6 +119,12 @@ impl Plan {
         if run.traces == 0 || run.block == 0 {
             return err("run: `traces` and `block` must be at least 1".into());
         }
+        if run.stride == 0 {
+            return err("run.stride: must be at least 1, which uses every point".into());
+        }
+        if let Some(bad) = run.simplify.filter(|t| !(t.is_finite() && *t > 0.0)) {
+            return err(format!("run.simplify: {bad} is no tolerance; give a length above 0, or leave it out"));
+        }
         if self.blocks() > MOST_BLOCKS {
             let least = run.traces.div_ceil(MOST_BLOCKS);
             let most = MOST_BLOCKS * u64::from(u32::MAX);

@@ -14,7 +14,8 @@ use super::tally::Setting;
 use super::walk::Walks;
 use crate::example::BuiltIn;
 use crate::scene::{Model, Scene, read_scene};
-use crate::trace::{SettledTrace, TraceReader, settle_owned};
+use crate::simplify::simplify;
+use crate::trace::{SettledTrace, Trace, TraceReader, settle_strided};
 
 /// A study that can be run.
 pub struct Study {
@@ -25,6 +26,8 @@ pub struct Study {
     /// The file of given traces.
     given: Option<PathBuf>,
     identity: String,
+    /// How many wall ends there are before any are left out.
+    pub(super) vertices: usize,
 }
 
 impl Study {
@@ -55,7 +58,10 @@ impl Study {
             }
         };
         let identity = identity(&plan, &models, given.as_deref())?;
-        let setting = Setting::new(&plan, models);
+        let bounds = models.iter().map(|m| m.bounds()).reduce(|(l, h), (low, high)| (l.min(low), h.max(high)));
+        let bounds = bounds.expect("a study has an anchor");
+        let vertices = models[0].vertices().len();
+        let setting = Setting::new(&plan, simplified(&plan, models)?, bounds);
         let least = setting.unit;
         if setting.bin < least {
             return Err(PlanError::new(format!(
@@ -63,7 +69,7 @@ impl Study {
                 setting.bin
             )));
         }
-        Ok(Study { plan, setting, walks, given, identity })
+        Ok(Study { plan, setting, walks, given, identity, vertices })
     }
 
     /// The plan.
@@ -71,7 +77,8 @@ impl Study {
         &self.plan
     }
 
-    /// The scene with each of its anchors; trace i has anchor i modulo their number.
+    /// The scene with each of its anchors, as ropes see it: simplified if the plan says so. Trace i has anchor i modulo their
+    /// number.
     pub fn models(&self) -> &[Arc<Model>] {
         &self.setting.models
     }
@@ -103,7 +110,7 @@ impl Study {
         loop {
             let traces = reader.next_batch(1 << 10, 1 << 22).map_err(|e| PlanError::new(e.to_string()))?;
             if let Some(trace) = traces.ok_or_else(none)?.into_iter().find(|trace| trace.id == number) {
-                return Ok(settle_owned(&self.setting.models[0], trace));
+                return Ok(self.settled(trace));
             }
         }
     }
@@ -111,6 +118,17 @@ impl Study {
     /// The scene with the anchor of trace `number`.
     pub fn model(&self, number: u64) -> &Arc<Model> {
         self.setting.model(number)
+    }
+
+    /// A trace that is drawn.
+    fn drawn(&self, number: u64) -> SettledTrace {
+        let walks = &self.walks[self.setting.anchor(number)];
+        if self.plan.run.is_traded() { self.settled(walks.walk(number)) } else { walks.trace(number) }
+    }
+
+    /// A trace as ropes see it.
+    fn settled(&self, trace: Trace) -> SettledTrace {
+        settle_strided(self.model(trace.id), trace, self.plan.run.stride as usize)
     }
 
     /// From where to take traces, from that of number `first` on.
@@ -146,16 +164,13 @@ impl Source<'_> {
     /// The traces with these numbers, in order; those before them are passed over.
     pub(super) fn take(&mut self, numbers: Range<u64>) -> Result<Vec<SettledTrace>, PlanError> {
         let Some(reader) = &mut self.reader else {
-            let walks = &self.study.walks;
-            let trace = |number| walks[self.study.setting.anchor(number)].trace(number);
-            return Ok(numbers.into_par_iter().map(trace).collect());
+            return Ok(numbers.into_par_iter().map(|number| self.study.drawn(number)).collect());
         };
         let there = self.next + skip(reader, numbers.start - self.next)?;
         if there < numbers.start {
             return Err(self.study.too_few(there));
         }
         self.next = numbers.end;
-        let model = &self.study.setting.models[0];
         let mut settled: Vec<SettledTrace> = Vec::new();
         let count = (numbers.end - numbers.start) as usize;
         while settled.len() < count {
@@ -163,9 +178,11 @@ impl Source<'_> {
             let Some(more) = more else {
                 return Err(self.study.too_few(there + settled.len() as u64));
             };
-            settled.par_extend(more.into_par_iter().map(|trace| settle_owned(model, trace)));
+            settled.par_extend(more.into_par_iter().map(|trace| self.study.settled(trace)));
         }
-        match settled.iter().find_map(|t| t.violation()) {
+        // Simplified walls may be in the way of a trace that kept clear of them as they were.
+        let is_strict = self.study.plan.run.simplify.is_none();
+        match settled.iter().find_map(|t| t.violation()).filter(|_| is_strict) {
             Some(violation) => Err(PlanError::new(violation.to_string())),
             None => Ok(settled),
         }
@@ -183,6 +200,16 @@ fn skip(reader: &mut TraceReader, count: u64) -> Result<u64, PlanError> {
         }
     }
     Ok(skipped)
+}
+
+/// The same with fewer wall ends, if the plan says so.
+fn simplified(plan: &Plan, models: Vec<Arc<Model>>) -> Result<Vec<Arc<Model>>, PlanError> {
+    let Some(tolerance) = plan.run.simplify else { return Ok(models) };
+    let wrong = |e: String| PlanError::new(format!("run.simplify: {e}"));
+    let anchors: Vec<DVec2> = models.iter().map(|m| m.anchor()).collect();
+    let scene = simplify(models[0].scene(), &anchors, tolerance).map_err(|e| wrong(e.to_string()))?;
+    let model = |&at| Model::new(scene.clone(), Some(at)).map(Arc::new).map_err(|e| wrong(e.to_string()));
+    anchors.iter().map(model).collect()
 }
 
 /// The scene with each of the plan's anchors.

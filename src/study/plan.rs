@@ -167,11 +167,30 @@ pub struct RunPlan {
     pub seed: u64,
     /// What decides: exact signs, or f32 alone on a GPU, whose ropes can be wrong.
     pub precision: Precision,
+    /// Of how many points of a trace one is used, where no wall is in the way of the longer step; 1 for all. Ropes can be
+    /// wrong otherwise.
+    #[serde(skip_serializing_if = "is_one")]
+    pub stride: u32,
+    /// By how much walls may move for there to be fewer wall ends; not at all without it. Traces are drawn among the walls as
+    /// they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simplify: Option<f64>,
+}
+
+fn is_one(stride: &u32) -> bool {
+    *stride == 1
+}
+
+impl RunPlan {
+    /// Whether accuracy is given for speed, other than by precision.
+    pub fn is_traded(&self) -> bool {
+        self.stride > 1 || self.simplify.is_some()
+    }
 }
 
 impl Default for RunPlan {
     fn default() -> Self {
-        RunPlan { traces: 10_000, block: 1000, seed: 1, precision: Precision::Certified }
+        RunPlan { traces: 10_000, block: 1000, seed: 1, precision: Precision::Certified, stride: 1, simplify: None }
     }
 }
 

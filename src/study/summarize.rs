@@ -7,7 +7,7 @@ use super::opened::Study;
 use super::state::{Shard, State};
 use super::summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Summary, Survival,
-    SurvivalPoint,
+    SurvivalPoint, Traded,
 };
 use super::tally::{Counts, Moments, SCALARS, Setting, of_rank};
 use crate::rope::Side;
@@ -32,6 +32,13 @@ impl State {
             steps: counts.looks.sum - counts.traces.sum,
             events: counts.events,
             blocks: counts.traces.blocks,
+            traded: plan.run.is_traded().then(|| Traded {
+                vertices: study.vertices as u64,
+                vertices_left: study.models()[0].vertices().len() as u64,
+                jumps: counts.jumps,
+                crossing_traces: counts.crossing[0],
+                crossing_steps: counts.crossing[1],
+            }),
             shard: (self.shard != Shard::WHOLE).then(|| self.shard.to_string()),
             stopped: self.stopped,
             scalars: scalars(&confidence, &moments, counts),

@@ -22,6 +22,9 @@ pub struct Summary {
     pub blocks: u64,
     /// Why no more blocks are.
     pub stopped: Stopped,
+    /// What was given for speed came to, if anything was; `study.run` says what.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub traded: Option<Traded>,
     /// Which shard this is, `K/N` with K from 0; `None` for the whole study.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<String>,
@@ -39,6 +42,21 @@ pub struct Summary {
     pub contacts: Vec<Contact>,
     /// The plane.
     pub map: Option<Map>,
+}
+
+/// What it came to that accuracy was given for speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Traded {
+    /// How many wall ends the scene has.
+    pub vertices: u64,
+    /// How many of them were left.
+    pub vertices_left: u64,
+    /// How many longer steps would have touched a wall, and were walked point by point.
+    pub jumps: u64,
+    /// How many traces cross a simplified wall.
+    pub crossing_traces: u64,
+    /// How many steps do.
+    pub crossing_steps: u64,
 }
 
 /// Why a study ended.

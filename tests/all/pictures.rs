@@ -138,6 +138,7 @@ fn answer(scene: &Scene) -> Summary {
     let ropes = if near.is_empty() { Vec::new() } else { ropes.collect() };
     Summary {
         shard: None,
+        traded: None,
         study: plan(
             r#"{"scene": {"file": "scenes/<sea & \"isles\">.geojson"}, "tallies": {"limits": [0.3, 0.6]},
                 "walk": {"kind": "persistent", "step": 0.5, "steps": 1024}, "run": {"traces": 40000}}"#,

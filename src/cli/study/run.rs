@@ -20,6 +20,7 @@ use crate::cli::input::note;
 use crate::cli::interrupt::{self, Writing};
 use crate::cli::progress::{Progress, with_progress};
 use crate::cli::summary::precision;
+use crate::cli::trade::TradeArgs;
 use crate::cli::{print, print_json};
 
 /// How often the state is saved.
@@ -46,6 +47,8 @@ pub(crate) struct RunArgs {
     dry_run: bool,
     #[command(flatten)]
     engine: EngineArgs,
+    #[command(flatten)]
+    trade: TradeArgs,
     /// Print the summary as one JSON document
     #[arg(long)]
     json: bool,
@@ -81,6 +84,8 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     plan.run.traces = args.traces.unwrap_or(plan.run.traces);
     plan.run.seed = args.seed.unwrap_or(plan.run.seed);
     plan.run.precision = args.engine.precision().unwrap_or(plan.run.precision);
+    plan.run.stride = args.trade.stride.unwrap_or(plan.run.stride);
+    plan.run.simplify = args.trade.simplify.or(plan.run.simplify);
     args.engine.check(plan.run.precision)?;
     if args.shard.of() > 1 && (plan.until.relative_error.is_some() || plan.until.seconds.is_some()) {
         return Err(Failure::input(anyhow!(

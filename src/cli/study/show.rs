@@ -9,6 +9,7 @@ use tautline::study::{Estimate, Stopped, Summary};
 use super::folder::{BaseArgs, Folder};
 use crate::cli::failure::Failure;
 use crate::cli::summary::{grouped, short};
+use crate::cli::trade;
 use crate::cli::{print, print_json};
 
 #[derive(Debug, clap::Args)]
@@ -55,6 +56,10 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
             run.and_then(|r| r["threads"].as_u64()).unwrap_or(1),
             short(rate)
         ));
+    }
+    if let Some(traded) = &summary.traded {
+        let run = &summary.study.run;
+        line(format_args!("traded: {}", trade::words(run.stride, run.simplify, traded)));
     }
     let confidence = 100.0 * summary.study.tallies.confidence;
     line(format_args!(

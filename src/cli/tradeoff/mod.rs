@@ -22,13 +22,14 @@ use super::bench::{length, open_device};
 use super::failure::Failure;
 use super::look::write_whole;
 use super::progress::runs;
+use super::trade::{stride, tolerance};
 use super::{interrupt, named_scene, print, print_json};
 
 /// The seed of built-in walks and scenes unless told otherwise.
 const SEED: u64 = 1;
 
 /// Of how many points one is used, unless told otherwise.
-const STRIDES: [usize; 4] = [2, 4, 8, 16];
+const STRIDES: [u32; 4] = [2, 4, 8, 16];
 
 /// By how much walls are simplified unless told otherwise, in steps of the walks that suit the scene.
 const TOLERANCES: [f64; 3] = [0.5, 2.0, 8.0];
@@ -58,7 +59,7 @@ pub(crate) struct Args {
     seed: Option<u64>,
     /// Use every K-th point of a trace; several with commas between them [default: 2,4,8,16]
     #[arg(long, value_name = "K", value_delimiter = ',', value_parser = stride)]
-    stride: Option<Vec<usize>>,
+    stride: Option<Vec<u32>>,
     /// Simplify walls by at most TOL; several with commas between them [default: half, 2 and 8 steps]
     #[arg(long, value_name = "TOL", value_delimiter = ',', value_parser = tolerance)]
     simplify: Option<Vec<f64>>,
@@ -80,16 +81,6 @@ pub(crate) struct Args {
     /// Print one JSON document
     #[arg(long)]
     json: bool,
-}
-
-fn stride(text: &str) -> Result<usize, String> {
-    let number = text.trim().parse().ok().filter(|k| (1..=1 << 30).contains(k));
-    number.ok_or_else(|| "give a whole number from 1 on, such as 4".to_owned())
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok().filter(|&x: &f64| x > 0.0 && x.is_finite());
-    number.ok_or_else(|| "give a number above 0, such as 0.5".to_owned())
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -137,7 +128,10 @@ impl Args {
         let strides = self.stride.clone().unwrap_or_else(|| STRIDES.into());
         let usual = || TOLERANCES.map(|steps| round(steps * self.step.unwrap_or_else(|| scene.step()))).into();
         let tolerances: Vec<f64> = self.simplify.clone().unwrap_or_else(usual);
-        let all = strides.into_iter().map(Setting::Stride).chain(tolerances.into_iter().map(Setting::Simplify));
+        let all = strides
+            .into_iter()
+            .map(|k| Setting::Stride(k as usize))
+            .chain(tolerances.into_iter().map(Setting::Simplify));
         let mut settings = vec![Setting::EXACT];
         for setting in all {
             if !settings.contains(&setting) {

@@ -59,6 +59,10 @@ pub(crate) struct Counts {
     pub events: u64,
     /// How many steps the longest trace has.
     pub longest_trace: u64,
+    /// How many longer steps of thinned traces were walked point by point.
+    pub jumps: u64,
+    /// How many traces cross a simplified wall, and how many steps.
+    pub crossing: [u64; 2],
     /// For the final and the greatest length: how many traces have one in each bin.
     pub bins: [BTreeMap<u64, u64>; 2],
     /// The same in classes fine enough for quantiles.
@@ -99,6 +103,9 @@ impl Counts {
             }
             looks += record.steps + 1;
             counts.longest_trace = counts.longest_trace.max(record.steps);
+            counts.jumps += trace.jumps() as u64;
+            counts.crossing[0] += u64::from(trace.violation().is_some());
+            counts.crossing[1] += trace.violations() as u64;
             counts.events += record.events.len() as u64;
             counts.follow(setting, trace, record, &mut touched, &mut cells);
             let anchor = setting.model(record.trace).anchor();
@@ -190,6 +197,8 @@ impl Counts {
             looks,
             events,
             longest_trace,
+            jumps,
+            crossing,
             bins,
             lengths,
             values,
@@ -203,6 +212,8 @@ impl Counts {
         self.looks.merge(&looks);
         self.events += events;
         self.longest_trace = self.longest_trace.max(longest_trace);
+        self.jumps += jumps;
+        self.crossing.iter_mut().zip(crossing).for_each(|(to, from)| *to += from);
         self.bins.iter_mut().zip(bins).for_each(|(to, from)| add(to, from));
         self.lengths.iter_mut().zip(lengths).for_each(|(to, from)| to.merge(from));
         self.values.iter_mut().zip(values).for_each(|(to, from)| add(to, from));

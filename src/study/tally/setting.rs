@@ -63,9 +63,8 @@ pub(crate) struct Setting {
 }
 
 impl Setting {
-    pub(crate) fn new(plan: &Plan, models: Vec<Arc<Model>>) -> Self {
-        let bounds = models.iter().map(|m| m.bounds()).reduce(|(l, h), (low, high)| (l.min(low), h.max(high)));
-        let (low, high) = bounds.expect("a study has an anchor");
+    /// For ropes in `models`, and traces between `low` and `high`.
+    pub(crate) fn new(plan: &Plan, models: Vec<Arc<Model>>, (low, high): (DVec2, DVec2)) -> Self {
         let extent = power_of_two((high - low).max_element());
         let tallies = &plan.tallies;
         let mut limits = tallies.limits.clone();

@@ -102,10 +102,19 @@ impl Walks {
 
     /// Trace `number`, ready to be evaluated. O(steps) where walls are far, and what [`Model::is_clear`] costs near them.
     pub fn trace(&self, number: u64) -> SettledTrace {
+        let walk = self.walk(number);
+        match self.kind {
+            Kind::Waypoints(_) => settle_owned(&self.room.model, walk),
+            _ => settle_clear(&self.room.model, walk),
+        }
+    }
+
+    /// The same, as it is drawn.
+    pub(super) fn walk(&self, number: u64) -> Trace {
         let model = &self.room.model;
         let start = self.starts.draw(model, &mut Random::new(self.seed, Purpose::Start, number));
         let mut random = Random::new(self.seed, Purpose::Walk, number);
-        let walk = match self.kind {
+        let points = match self.kind {
             Kind::Uniform { step, at_walls } => {
                 self.room.walk(at_walls, start.at(model), self.steps, Uniform { step }, &mut random)
             }
@@ -118,11 +127,10 @@ impl Walks {
             }
             Kind::Waypoints(ref waypoints) => {
                 let mut goals = Random::new(self.seed, Purpose::Goal, number);
-                let points = waypoints.drive(model, start, self.steps, &mut goals);
-                return settle_owned(model, Trace { id: number, points });
+                waypoints.drive(model, start, self.steps, &mut goals)
             }
         };
-        settle_clear(model, Trace { id: number, points: walk })
+        Trace { id: number, points }
     }
 }
 

@@ -92,7 +92,9 @@ fn people_get_tables_and_a_diagram() {
     assert!(has("the study's own answers") && has("what failed"), "{table}");
     assert!(!table.contains("--out FILE draws the diagram"));
     let svg = folder.text("d.svg");
-    for name in ["note, listing 1", "gpu fast", "below 3/N", "green: less than the sample leaves open", "ns per trace-step"] {
+    for name in
+        ["note, listing 1", "gpu fast", "below 3/N", "green: less than the sample leaves open", "ns per trace-step"]
+    {
         assert!(svg.contains(&format!(">{name}<")), "{name}");
     }
     roxmltree::Document::parse(&svg).unwrap();
