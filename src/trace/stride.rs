@@ -54,7 +54,9 @@ fn thin(model: &Model, trace: &mut Trace, k: usize) -> Thinned {
     while from < last {
         let to = last.min(from + k);
         let end = points[to];
-        let first = if to - from == 1 || model.is_clear(start, end) {
+        // From a wall's end it could lead to the other side of the walls that meet there.
+        let is_clear = || model.is_clear(start, end) && model.vertex_at(start).is_none();
+        let first = if to - from == 1 || is_clear() {
             to
         } else {
             thinned.jumps += 1;

@@ -20,10 +20,9 @@ fn used(model: &Model, trace: &Trace, k: usize) -> (Vec<usize>, usize) {
     let last = trace.points.len() - 1;
     for from in (0..last).step_by(k) {
         let to = last.min(from + k);
-        // Every wall is looked at: none may touch the longer step, unless it leads away from a wall's end.
-        let step = Trace { id: 0, points: vec![trace.points[from], trace.points[to]] };
-        let is_short = to == from + 1;
-        if is_short || model.is_clear(step.points[0], step.points[1]) {
+        // No wall may touch the longer step, not even where it starts.
+        let [a, b] = [from, to].map(|i| trace.points[i]);
+        if to == from + 1 || (model.is_clear(a, b) && model.is_clear(b, a)) {
             used.push(to);
         } else {
             jumps += 1;

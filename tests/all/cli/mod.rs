@@ -11,6 +11,7 @@ mod results;
 mod scenes;
 mod study;
 mod traces;
+mod trade;
 mod tradeoff;
 mod usage;
 
