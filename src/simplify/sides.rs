@@ -30,12 +30,23 @@ pub(super) fn is_clean(model: &Model, wall: u32) -> bool {
     model.index().visit(lower(a, b), higher(a, b), visit).is_continue()
 }
 
-/// For each of the walls from one vertex to another: whether its left and its right side may be moved into the space beside
-/// it, for ropes that are tied at any of `anchors`. That is so unless a rope may reach that side and may not reach the other.
+/// For each wall that ends where `may_go` says so: whether it may be moved into the space on its left and on its right, for
+/// ropes that are tied at any of `anchors`. That is so unless a rope may reach that side and may not reach the other.
 ///
-/// O(anchors * triangles), and the triangles round the vertices at which the walls start.
-pub(super) fn yielding(visibility: &Visibility, anchors: &[DVec2], walls: &[[u32; 2]]) -> Vec<[bool; 2]> {
-    let beside: Vec<Option<[u32; 2]>> = walls.iter().map(|&[from, to]| visibility.beside(from, to)).collect();
+/// O(anchors * triangles), and the triangles round the vertices that may go.
+pub(super) fn yielding(
+    visibility: &Visibility,
+    anchors: &[DVec2],
+    walls: &[[u32; 2]],
+    may_go: impl Fn(u32) -> bool,
+) -> Vec<[bool; 2]> {
+    // Looked up round an end that may go: round one at which many walls meet, there are many triangles.
+    let beside = |&[u, v]: &[u32; 2]| match () {
+        () if may_go(u) => visibility.beside(u, v),
+        () if may_go(v) => visibility.beside(v, u).map(|[right, left]| [left, right]),
+        () => None,
+    };
+    let beside: Vec<Option<[u32; 2]>> = walls.iter().map(beside).collect();
     let mut yielding: Vec<[bool; 2]> = beside.iter().map(|beside| [beside.is_some(); 2]).collect();
     for &anchor in anchors {
         let reach = visibility.reach(anchor);

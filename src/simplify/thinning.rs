@@ -61,26 +61,13 @@ impl<'a> Thinning<'a> {
     pub(super) fn new(model: &'a Model, visibility: &Visibility, anchors: &[DVec2], tolerance: f64) -> Self {
         let (vertices, walls) = (model.vertices(), model.scene().walls());
         let meeting = candidates(model, anchors);
-        // From an end that may go, since few triangles lie round such ends.
-        let from = |&[u, v]: &[u32; 2]| if meeting[u as usize].is_some() { [u, v] } else { [v, u] };
-        let directed: Vec<[u32; 2]> = walls.iter().map(from).collect();
-        let (mut numbers, mut asked) = (Vec::new(), Vec::new());
-        for (wall, number) in directed.iter().zip(0..) {
-            if meeting[wall[0] as usize].is_some() {
-                numbers.push(number);
-                asked.push(*wall);
-            }
-        }
-        let mut yields = vec![[false; 2]; walls.len()];
-        for (number, yielding) in numbers.into_iter().zip(yielding(visibility, anchors, &asked)) {
-            yields[number as usize] = yielding;
-        }
-        let wall = |(ends, yields)| Some(Wall { ends, yields, replaced: Vec::new() });
+        let yields = yielding(visibility, anchors, walls, |v| meeting[v as usize].is_some());
+        let wall = |(&ends, yields)| Some(Wall { ends, yields, replaced: Vec::new() });
         let apart = anchors.iter().copied().filter(|&anchor| model.vertex_at(anchor).is_none());
         Thinning {
             vertices,
             tolerance,
-            walls: directed.into_iter().zip(yields).map(wall).collect(),
+            walls: walls.iter().zip(yields).map(wall).collect(),
             meeting,
             changes: vec![0; vertices.len()],
             joined: walls.iter().map(|&[u, v]| [u.min(v), u.max(v)]).collect(),

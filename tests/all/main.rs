@@ -17,6 +17,7 @@ mod pictures;
 mod random;
 mod scenes;
 mod shader;
+mod simplify;
 mod stride;
 mod study_truth;
 mod support;
