@@ -2,6 +2,7 @@
 
 pub mod bench;
 mod environment;
+pub mod extremes;
 mod spread;
 
 pub use environment::{Environment, processor};

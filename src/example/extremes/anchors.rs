@@ -31,7 +31,7 @@ fn moved(walls: &[[DVec2; 2]], by: DVec2) -> Vec<[DVec2; 2]> {
 
 fn tied(name: &str, walls: Vec<[DVec2; 2]>, anchor: DVec2) -> Extreme {
     let model = model(&walls, anchor);
-    let mut traces: Vec<_> = (0..4).map(|id| wander(&model, &walls, Draws::new(21, id))).collect();
+    let mut traces: Vec<_> = (0..4).map(|id| wander(&model, &walls, 150, Draws::new(21, id))).collect();
     traces.push(vec![anchor; 50]);
     // There and back, which is always allowed.
     let retraced: Vec<DVec2> = traces[0].iter().chain(traces[0].iter().rev()).copied().chain([anchor]).collect();

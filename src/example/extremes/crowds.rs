@@ -68,11 +68,11 @@ pub(super) fn piles() -> Vec<Extreme> {
         .into_iter()
         .map(|(name, walls)| {
             let model = model(&walls, centre);
-            let mut traces: Vec<_> = (0..3).map(|id| wander(&model, &walls, Draws::new(17, id))).collect();
+            let mut traces: Vec<_> = (0..3).map(|id| wander(&model, &walls, 16, Draws::new(17, id))).collect();
             let (low, high) = model.bounds();
             let size = (high - low).max_element();
             let mut draws = Draws::new(18, 0);
-            traces.push(way(&model, 200, |_| (low + high) / 2.0 + draws.point(size)));
+            traces.push(way(&model, 40, |_| (low + high) / 2.0 + draws.point(size)));
             case(name, walls, centre, traces)
         })
         .collect()
@@ -82,7 +82,7 @@ pub(super) fn piles() -> Vec<Extreme> {
 pub(super) fn degenerate() -> Vec<Extreme> {
     let anchor = p(0.25, 0.5);
     let hardly =
-        || [vec![anchor], vec![anchor; 5000], vec![p(0.5, 0.125)], vec![p(0.5, 0.125); 3], vec![p(0.5, 0.125), anchor]];
+        || [vec![anchor], vec![anchor; 300], vec![p(0.5, 0.125)], vec![p(0.5, 0.125); 3], vec![p(0.5, 0.125), anchor]];
     let on_line = |y: f64| (0..10).map(|k| [p(f64::from(2 * k), y), p(f64::from(2 * k + 1), y)]).collect::<Vec<_>>();
     let wall = [p(0.0, 0.0), p(1.0, 0.0)];
     let mut cases = vec![
@@ -92,7 +92,7 @@ pub(super) fn degenerate() -> Vec<Extreme> {
         case("one wall", vec![wall], anchor, hardly()),
         case("no traces", vec![wall], anchor, []),
         case("no walls and no traces", vec![], anchor, []),
-        case("always on a wall's end", vec![wall], wall[0], [vec![wall[0]; 3000], vec![wall[1]; 3000], vec![wall[1]]]),
+        case("always on a wall's end", vec![wall], wall[0], [vec![wall[0]; 300], vec![wall[1]; 300], vec![wall[1]]]),
     ];
     let ends: [(&str, DVec2, f64); 3] =
         [("beside it", anchor, 0.0), ("on it", p(-1.0, 0.0), 0.0), ("between two of them", p(1.5, 0.0), 0.0)];

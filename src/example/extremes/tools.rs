@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::Extreme;
 use crate::scene::{Model, Scene};
-use crate::trace::{Trace, settle};
+use crate::trace::{Trace, first_violation};
 
 /// A point.
 pub(super) fn p(x: f64, y: f64) -> DVec2 {
@@ -55,18 +55,23 @@ pub(super) fn case(
     Extreme { name: name.into(), walls, anchor, traces: numbered(traces) }
 }
 
-/// The way from the anchor over the `stops`, without those to which a step would break the rules. `next` gives the next stop,
-/// given where the free end stands. O(stops^2).
+/// The way from the anchor over some of `stops` stops: those to which a step would break the rules are left out. `next` gives
+/// the next stop, given where the free end stands.
 pub(super) fn way(model: &Model, stops: usize, mut next: impl FnMut(DVec2) -> DVec2) -> Vec<DVec2> {
-    let mut trace = Trace { id: 0, points: vec![model.anchor()] };
+    let mut points = vec![model.anchor()];
+    // On which side the free end passes what it touches is open until it stands clear of all walls' ends.
+    let mut clear = 0;
     for _ in 0..stops {
-        let here = trace.points[trace.points.len() - 1];
-        trace.points.push(next(here));
-        if settle(model, &trace).violation().is_some() {
-            trace.points.pop();
+        let to = next(points[points.len() - 1]);
+        let open = points[clear..].iter().copied().chain([to]).collect();
+        if first_violation(model, Trace { id: 0, points: open }).is_none() {
+            if model.vertex_at(to).is_none() {
+                clear = points.len();
+            }
+            points.push(to);
         }
     }
-    trace.points
+    points
 }
 
 /// The model of some walls.

@@ -47,14 +47,14 @@ fn plans() -> Vec<(&'static str, Vec<[DVec2; 2]>, DVec2)> {
 
 fn wandering(name: &str, walls: Vec<[DVec2; 2]>, anchor: DVec2) -> Extreme {
     let model = model(&walls, anchor);
-    let traces: Vec<_> = (0..5).map(|id| wander(&model, &walls, Draws::new(8, id))).collect();
+    let traces: Vec<_> = (0..5).map(|id| wander(&model, &walls, 200, Draws::new(8, id))).collect();
     case(name, walls, anchor, traces)
 }
 
 /// From wall end to wall end, mostly along walls, with stays, and now and then somewhere else.
-pub(super) fn wander(model: &Model, walls: &[[DVec2; 2]], mut draws: Draws) -> Vec<DVec2> {
+pub(super) fn wander(model: &Model, walls: &[[DVec2; 2]], stops: usize, mut draws: Draws) -> Vec<DVec2> {
     let (low, high) = model.bounds();
-    way(model, 200, |here| {
+    way(model, stops, |here| {
         let [wall, end] = [walls.len(), 2].map(|count| draws.whole(0, count as i64 - 1) as usize);
         let from_here: Vec<DVec2> =
             walls.iter().filter(|ends| ends.contains(&here)).map(|&[u, v]| if u == here { v } else { u }).collect();
