@@ -3,6 +3,7 @@
 pub mod bench;
 mod environment;
 mod note;
+pub mod extremes;
 mod spread;
 pub mod tradeoff;
 

@@ -1,5 +1,8 @@
 //! Hairs: on which side a settled trace passes each of the vertices that it touches.
 
+use std::collections::HashMap;
+use std::rc::Rc;
+
 use glam::DVec2;
 
 use super::corner::Corner;
@@ -40,6 +43,8 @@ pub(super) fn pluck_stays(model: &Model, settled: &mut SettledTrace, stays: &[St
 /// The stays that touch, in order, and those right before and after them; what else a trace does is of no matter.
 fn stays(model: &Model, points: &[DVec2], touching: &[u32]) -> Vec<Stay> {
     let mut stays: Vec<Stay> = Vec::new();
+    // One for each vertex, however often it is touched: thousands of walls may meet there.
+    let mut corners: HashMap<u32, Rc<Corner>> = HashMap::new();
     let beside = |i: usize| Stay { at: points[i], first: i, end: i + 1, corner: None };
     let mut rest = touching;
     while let Some(&first) = rest.first() {
@@ -51,7 +56,9 @@ fn stays(model: &Model, points: &[DVec2], touching: &[u32]) -> Vec<Stay> {
         if first > 0 && stays.last().is_none_or(|last| last.end < first) {
             stays.push(beside(first - 1));
         }
-        stays.push(Stay { at, first, end, corner: Some(Corner::new(model, at)) });
+        let vertex = model.vertex_at(at).expect("what is touched is a vertex");
+        let corner = corners.entry(vertex).or_insert_with(|| Rc::new(Corner::new(model, at)));
+        stays.push(Stay { at, first, end, corner: Some(Rc::clone(corner)) });
         rest = &rest[length..];
         if end < points.len() && rest.first().is_none_or(|&next| next as usize > end) {
             stays.push(beside(end));
@@ -128,5 +135,22 @@ impl Plucker<'_> {
         let old = std::mem::take(&mut self.settled.points);
         self.settled.points =
             old.into_iter().enumerate().flat_map(|(i, p)| std::iter::repeat_n(p, copies(i))).collect();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    /// Where thousands of walls meet, a corner for every stay would take a trace's memory times thousands.
+    #[test]
+    fn stays_at_one_vertex_share_its_corner() {
+        let [hub, tip] = [DVec2::ZERO, DVec2::new(1.0, 0.0)];
+        let model = Model::new(Scene::new([[hub, tip]]).unwrap(), Some(DVec2::ONE)).unwrap();
+        let stays = stays(&model, &[DVec2::ONE, hub, tip, hub, DVec2::ONE, hub], &[1, 2, 3, 5]);
+        let corners: Vec<_> = stays.iter().filter_map(|stay| stay.corner.as_ref()).collect();
+        assert!(Rc::ptr_eq(corners[0], corners[2]) && Rc::ptr_eq(corners[0], corners[3]));
+        assert!(!Rc::ptr_eq(corners[0], corners[1]));
     }
 }

@@ -1,5 +1,7 @@
 //! Settling in the plain way: every step against every wall, every point a stay. What [`settle`] does must be the same.
 
+use std::rc::Rc;
+
 use glam::DVec2;
 use proptest::prelude::*;
 
@@ -38,7 +40,7 @@ fn settle_plainly(model: &Model, trace: &Trace) -> SettledTrace {
         match stays.last_mut() {
             Some(stay) if stay.at == at => stay.end = i + 1,
             _ => {
-                let corner = touching[i].then(|| Corner::new(model, at));
+                let corner = touching[i].then(|| Rc::new(Corner::new(model, at)));
                 stays.push(Stay { at, first: i, end: i + 1, corner });
             }
         }

@@ -1,5 +1,7 @@
 //! Slides: on which side of the walls a trace goes that follows them from end to end.
 
+use std::rc::Rc;
+
 use glam::DVec2;
 
 use super::corner::{Corner, Way};
@@ -10,7 +12,7 @@ pub(super) struct Stay {
     pub at: DVec2,
     pub first: usize,
     pub end: usize,
-    pub corner: Option<Corner>,
+    pub corner: Option<Rc<Corner>>,
 }
 
 impl Stay {
@@ -32,9 +34,10 @@ pub(super) fn outgoing(sides: &[Turn], i: usize) -> Turn {
 /// Chooses on which side of the walls each slide of a run of corners goes: one that connects at every corner; of those,
 /// one that rounds no tip needlessly; of those, the one on the side that the trace comes from and goes on to; else the left.
 pub(super) fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&Stay>) -> Vec<Turn> {
-    const SLIPS: u32 = 1 << 16;
+    // More than all tips of a run together, since a trace has fewer than 2^31 points; and so many slips have a sum.
+    const SLIPS: u64 = 1 << 33;
     // More than the two sides on which a slide can be wrong: a trace that turns back on a wall's end winds round nothing.
-    const TIP: u32 = 3;
+    const TIP: u64 = 3;
     const BOTH: [Turn; 2] = [Turn::Left, Turn::Right];
     let slides = run.len() - 1;
     if slides == 0 {
@@ -42,12 +45,12 @@ pub(super) fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&S
     }
     let corner = |i: usize| run[i].corner.as_ref().expect("a run is made of corners");
     let cost_of = |i: usize, from: Way, to: Way| {
-        if corner(i).connects(from, to) { TIP * u32::from(corner(i).rounds_tip(from, to)) } else { SLIPS }
+        if corner(i).connects(from, to) { TIP * u64::from(corner(i).rounds_tip(from, to)) } else { SLIPS }
     };
     // Which side of the line from p to q the point lies on, against the side chosen.
     let other_side = |p: DVec2, q: DVec2, point: DVec2, side: Turn| {
         let turn = orient(p, q, point);
-        u32::from(if side == Turn::Left { turn < 0.0 } else { turn > 0.0 })
+        u64::from(if side == Turn::Left { turn < 0.0 } else { turn > 0.0 })
     };
     let enter = |side: Turn| {
         before.map_or(0, |b| {
@@ -72,7 +75,7 @@ pub(super) fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&S
             BOTH.into_iter().zip(costs[k + 1]).map(|(next, rest)| turn(k + 1, side, next) + rest).min().unwrap_or(0)
         });
     }
-    let pick = |cost: [u32; 2]| if cost[0] <= cost[1] { Turn::Left } else { Turn::Right };
+    let pick = |cost: [u64; 2]| if cost[0] <= cost[1] { Turn::Left } else { Turn::Right };
     let mut sides: Vec<Turn> = Vec::with_capacity(slides);
     for (k, mut cost) in costs.into_iter().enumerate() {
         for (c, side) in cost.iter_mut().zip(BOTH) {

@@ -8,6 +8,7 @@ mod conservative;
 mod decide;
 mod drawings;
 mod examples;
+mod extremes;
 mod fast;
 mod formats;
 mod gallery;

@@ -223,3 +223,18 @@ fn a_trace_through_walls_comes_to_an_end() {
     let record = Reference::new(&m).evaluate(&[settled], &Job::new()).unwrap().remove(0);
     assert_eq!((record.status, record.steps), (Status::Violation, 41));
 }
+
+/// Across a corner where four walls meet, again and again: a step that breaks the rules each time. However many there are, none
+/// is said to do so that need not.
+#[test]
+fn tens_of_thousands_of_slips_hide_none() {
+    let hub = [0.0, 0.0];
+    let [east, north, west, south] = [[2.0, 0.0], [0.0, 2.0], [-2.0, 0.0], [0.0, -2.0]];
+    let m = model([1.0, -1.0], &[east, north, west, south].map(|tip| [hub, tip]));
+    // In on the one side of the wall to the east and out along it, which is allowed; to the west from there it is not.
+    for slips in [1, 65_535, 65_536, 70_000] {
+        let across = [west, hub, east, hub].into_iter().cycle().take(2 * slips - 1);
+        let points: Vec<P> = [[1.0, -1.0], hub, east, hub].into_iter().chain(across).collect();
+        assert_eq!(violation(&m, &points), Some((4, ViolationKind::SlipsThrough, 0)), "{slips} slips");
+    }
+}

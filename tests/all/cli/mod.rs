@@ -5,6 +5,7 @@ mod bench;
 mod convert;
 mod draw;
 mod engines;
+mod extremes;
 mod process;
 mod reports;
 mod results;

@@ -16,7 +16,7 @@ fn refused(text: &str, parts: &[&str]) {
 }
 
 /// A file of columns trace, x and `name`.
-fn write_parquet(folder: &Folder, name: &str, trace: Vec<u32>, x: Vec<f64>, y: Vec<f64>) {
+pub(super) fn write_parquet(folder: &Folder, name: &str, trace: Vec<u32>, x: Vec<f64>, y: Vec<f64>) {
     let columns: [(&str, ArrayRef); 3] = [
         ("trace", Arc::new(UInt32Array::from(trace))),
         ("x", Arc::new(Float64Array::from(x))),
