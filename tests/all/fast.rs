@@ -7,10 +7,11 @@ use proptest::test_runner::{TestError, TestRunner};
 use tautline::engine::{Engine, FastGpu, Gpu, Job, Reference};
 use tautline::example::{Walker, floor_plan, random_walls, walks};
 use tautline::gpu::{DECIDE_WGSL, Device, Tuning};
-use tautline::rope::{TraceRecord, replay};
+use tautline::rope::TraceRecord;
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
 
+use crate::corpus::bodies::engines::is_sound;
 use crate::scenes::{KINDS, Kind, Recipe, recipe};
 use crate::support::{cases, posts, software};
 
@@ -20,26 +21,6 @@ fn fast<'m>(device: &Device, model: &'m Model) -> FastGpu<'m> {
 
 fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
     engine.evaluate(traces, &Job::new()).unwrap()
-}
-
-/// Every number is finite, and the numbers, the rope and the events of a record say the same.
-fn is_sound(model: &Model, trace: &SettledTrace, record: &TraceRecord) {
-    assert_eq!((record.trace, record.steps), (trace.id(), trace.steps() as u64));
-    assert!(record.length.is_finite() && record.max_length.is_finite());
-    assert!(record.max_length >= record.length && record.max_depth >= record.depth);
-    assert_eq!(record.depth as usize, record.wraps.len());
-    assert!(record.pull.is_none_or(|pull| (pull.length() - 1.0).abs() < 1e-9));
-    assert!(record.events.is_sorted_by_key(|event| event.step));
-    assert!(record.events.iter().all(|event| event.step as u64 <= record.steps));
-    let end = *trace.points().last().unwrap();
-    let steps = record.steps as usize;
-    replay(model.anchor(), model.vertices(), steps + 1, &record.events, |k, rope| {
-        if k == steps {
-            let wraps: Vec<_> = rope.taut(end).iter().map(|c| (c.at, c.side)).collect();
-            assert_eq!(wraps, record.wraps);
-            assert_eq!(rope.length(end), record.length);
-        }
-    });
 }
 
 /// Runs `test` on random scenes of one kind.
