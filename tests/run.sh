@@ -35,6 +35,7 @@ fi
 
 say "formatting"
 cargo fmt --check
+cargo fmt --check --manifest-path tests/fuzz/Cargo.toml
 say "lints"
 cargo clippy --release --all-targets --quiet -- -D warnings
 say "vector code"

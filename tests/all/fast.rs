@@ -11,6 +11,7 @@ use tautline::rope::TraceRecord;
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
 
+use crate::corpus::bodies::engines::is_sound;
 use crate::scenes::{KINDS, Kind, Recipe, recipe};
 use crate::support::{cases, is_sound, posts, software};
 

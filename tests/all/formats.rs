@@ -7,6 +7,8 @@ use proptest::prelude::*;
 use tautline::output::write_scene;
 use tautline::scene::{Scene, SceneOptions, Unknown, read_scene, read_scene_with};
 
+use crate::corpus::bodies::scenes::same;
+
 fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/formats").join(name)
 }
@@ -199,12 +201,6 @@ fn files_cut_off_anywhere_are_read_or_refused_with_their_name() {
             assert!(e.to_string().contains(name), "{e}");
         }
     }
-}
-
-fn same(a: &Scene, b: &Scene) -> bool {
-    let bits = |s: &Scene| s.vertices().iter().map(|p| p.to_array().map(f64::to_bits)).collect::<Vec<_>>();
-    let anchor = |s: &Scene| s.anchor().map(|p| p.to_array().map(f64::to_bits));
-    bits(a) == bits(b) && a.walls() == b.walls() && anchor(a) == anchor(b)
 }
 
 /// Coordinates of all sizes, some of them met again and again.

@@ -5,6 +5,7 @@ mod batch;
 mod built_in;
 mod cli;
 mod conservative;
+mod corpus;
 mod decide;
 mod drawings;
 mod examples;

@@ -1,0 +1,90 @@
+//! Any scene and any traces: all engines give the reference's ropes.
+
+use std::slice;
+use std::sync::LazyLock;
+
+use tautline::candidates::{LISTS_BUDGET, Lists};
+use tautline::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Reference};
+use tautline::gpu::{AdapterChoice, Device, SWEEP_WGSL};
+use tautline::rope::{TraceRecord, replay};
+use tautline::scene::Model;
+use tautline::trace::SettledTrace;
+
+use super::recipe::recipe;
+
+/// `cpu`, as it is and with other windows and lists, and `funnel` against `reference`.
+pub(super) fn cpu(input: &[u8]) {
+    let Some((model, traces)) = recipe(input) else { return };
+    let truth = agree(&model, &traces);
+    let others = [
+        Cpu::new(&model).window(1),
+        Cpu::new(&model).keep_all(),
+        Cpu::with_lists(Lists::new(&model).after(0)),
+        Cpu::with_lists(Lists::new(&model).after(0)).window(3),
+    ];
+    for mut other in others {
+        assert_eq!(run(&mut other, &traces), truth);
+    }
+    for (trace, record) in traces.iter().zip(&truth) {
+        is_sound(&model, trace, record);
+        if trace.violation().is_none() {
+            match Funnel::new(&model).evaluate(slice::from_ref(trace), &Job::new()) {
+                Ok(ropes) => assert_eq!(without_events(&ropes[0]), without_events(record)),
+                Err(EngineError::Unfit { .. }) => {}
+                Err(error) => panic!("{error}"),
+            }
+        }
+    }
+}
+
+/// `gpu` against `reference`, and whether the records of the fast one are sound.
+pub(super) fn gpu(input: &[u8]) {
+    static DEVICE: LazyLock<Device> =
+        LazyLock::new(|| Device::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}")));
+    let Some((model, traces)) = recipe(input) else { return };
+    let truth = run(&mut Reference::new(&model), &traces);
+    let lists = Lists::new(&model).after(0);
+    let gpu = Gpu::with(DEVICE.clone(), lists, LISTS_BUDGET, DEVICE.tuning(), SWEEP_WGSL);
+    let mut gpu = gpu.unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(run(&mut gpu, &traces), truth);
+    assert_eq!(run(&mut gpu.keep_all().window(2), &traces), truth);
+    let mut fast = FastGpu::new(DEVICE.clone(), &model).unwrap_or_else(|e| panic!("{e}"));
+    let records = run(&mut fast, &traces);
+    traces.iter().zip(&records).for_each(|(trace, record)| is_sound(&model, trace, record));
+}
+
+/// The reference's records, which those of `cpu` must be.
+pub(super) fn agree(model: &Model, traces: &[SettledTrace]) -> Vec<TraceRecord> {
+    let truth = run(&mut Reference::new(model), traces);
+    assert_eq!(run(&mut Cpu::new(model), traces), truth);
+    truth
+}
+
+fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
+    engine.evaluate(traces, &Job::new()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// All but the events: `funnel` knows no contacts that are passed straight.
+fn without_events(record: &TraceRecord) -> TraceRecord {
+    TraceRecord { events: Vec::new(), ..record.clone() }
+}
+
+/// Every number is finite, and the numbers, the rope and the events of a record say the same.
+pub(crate) fn is_sound(model: &Model, trace: &SettledTrace, record: &TraceRecord) {
+    assert_eq!((record.trace, record.steps), (trace.id(), trace.steps() as u64));
+    assert!(record.length.is_finite() && record.max_length.is_finite());
+    assert!(record.max_length >= record.length && record.max_depth >= record.depth);
+    assert_eq!(record.depth as usize, record.wraps.len());
+    assert!(record.pull.is_none_or(|pull| (pull.length() - 1.0).abs() < 1e-9));
+    assert!(record.events.is_sorted_by_key(|event| event.step));
+    assert!(record.events.iter().all(|event| event.step as u64 <= record.steps));
+    let end = *trace.points().last().unwrap();
+    let steps = record.steps as usize;
+    replay(model.anchor(), model.vertices(), steps + 1, &record.events, |k, rope| {
+        if k == steps {
+            let wraps: Vec<_> = rope.taut(end).iter().map(|c| (c.at, c.side)).collect();
+            assert_eq!(wraps, record.wraps);
+            assert_eq!(rope.length(end), record.length);
+        }
+    });
+}
