@@ -10,10 +10,15 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
+use glam::DVec2;
+use tautline::engine::{Cpu, Engine, Job};
 use tautline::example::{BuiltIn, Walker};
+use tautline::gpu::{AdapterChoice, Device};
 use tautline::report::bench::BenchScene;
+use tautline::report::extremes::{HEAD, errors};
 use tautline::report::{NoteErrors, note_errors};
-use tautline::scene::{Model, read_scene};
+use tautline::scene::{Model, Scene, read_scene};
+use tautline::trace::{Trace, settle};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -35,6 +40,10 @@ fn main() -> Result<()> {
     }
     eprintln!("the note");
     replace(&mut page, "note", &note()?)?;
+    eprintln!("extremes");
+    replace(&mut page, "extremes", &extremes()?)?;
+    eprintln!("what is not worth trading");
+    replace(&mut page, "depth", &depth()?)?;
     std::fs::write(PAGE, page)?;
     Ok(())
 }
@@ -104,6 +113,42 @@ fn note() -> Result<String> {
             }
             text.push('\n');
         }
+    }
+    Ok(text)
+}
+
+/// How far precision fast and the note are off in extreme cases.
+fn extremes() -> Result<String> {
+    let mut text = format!("{HEAD}\n");
+    for line in errors(&Device::open(&AdapterChoice::Software)?, &Job::new())? {
+        writeln!(text, "{line}")?;
+    }
+    Ok(text)
+}
+
+/// What a step costs while the rope has few contacts, and while it has very many.
+fn depth() -> Result<String> {
+    let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(DVec2::from);
+    let pillar = Scene::new((0..4).map(|i| [corners[i], corners[(i + 1) % 4]]))?;
+    let model = Model::new(pillar, Some([0.0, -3.0].into()))?;
+    let mut engine = Cpu::new(&model);
+    let mut text = String::from("| turns about the pillar | contacts at the most | ns a step |\n|---|---|---|\n");
+    for turns in [1, 10, 100, 1000, 10_000, 100_000] {
+        // There and back, 8 steps a turn.
+        let place = |i: i32| DVec2::from_angle(std::f64::consts::TAU * (f64::from(i) / 8.0 - 0.25)) * 3.0;
+        let points = (0..=8 * turns).chain((0..8 * turns).rev()).map(place).collect();
+        let trace = [settle(&model, &Trace { id: 0, points })];
+        let mut best = f64::INFINITY;
+        let mut contacts = 0;
+        for _ in 0..5 {
+            let times = 100_000 / turns;
+            let start = std::time::Instant::now();
+            for _ in 0..times {
+                contacts = engine.evaluate(&trace, &Job::new())?[0].max_depth;
+            }
+            best = best.min(start.elapsed().as_nanos() as f64 / f64::from(times) / f64::from(16 * turns));
+        }
+        writeln!(text, "| {turns} | {contacts} | {best:.0} |")?;
     }
     Ok(text)
 }

@@ -15,7 +15,8 @@ use tautline::rope::{EventKind, TraceRecord, replay};
 use tautline::scene::Model;
 use tautline::trace::{SettledTrace, settle};
 
-use crate::support::{gpu_on, is_sound, software};
+use crate::corpus::bodies::engines::is_sound;
+use crate::support::{gpu_on, software};
 
 macro_rules! families {
     ($($name:ident),*) => {

@@ -13,7 +13,7 @@ use tautline::trace::{SettledTrace, Trace, settle};
 
 use crate::corpus::bodies::engines::is_sound;
 use crate::scenes::{KINDS, Kind, Recipe, recipe};
-use crate::support::{cases, is_sound, posts, software};
+use crate::support::{cases, posts, software};
 
 fn fast<'m>(device: &Device, model: &'m Model) -> FastGpu<'m> {
     FastGpu::new(device.clone(), model).unwrap()

@@ -120,23 +120,3 @@ pub(crate) fn posts() -> Model {
     });
     Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(50.5, 49.5))).unwrap()
 }
-
-/// Every number is finite, and the numbers, the rope and the events of a record say the same.
-pub(crate) fn is_sound(model: &Model, trace: &SettledTrace, record: &TraceRecord) {
-    assert_eq!((record.trace, record.steps), (trace.id(), trace.steps() as u64));
-    assert!(record.length.is_finite() && record.max_length.is_finite());
-    assert!(record.max_length >= record.length && record.max_depth >= record.depth);
-    assert_eq!(record.depth as usize, record.wraps.len());
-    assert!(record.pull.is_none_or(|pull| (pull.length() - 1.0).abs() < 1e-9));
-    assert!(record.events.is_sorted_by_key(|event| event.step));
-    assert!(record.events.iter().all(|event| event.step as u64 <= record.steps));
-    let end = *trace.points().last().unwrap();
-    let steps = record.steps as usize;
-    replay(model.anchor(), model.vertices(), steps + 1, &record.events, |k, rope| {
-        if k == steps {
-            let wraps: Vec<_> = rope.taut(end).iter().map(|c| (c.at, c.side)).collect();
-            assert_eq!(wraps, record.wraps);
-            assert_eq!(rope.length(end), record.length);
-        }
-    });
-}
