@@ -23,8 +23,9 @@ struct Result {
     // The half-plane's value at p, as `sweep.wgsl` computes it.
     value: f32,
     least: f32,
-    unused_x: f32,
-    unused_y: f32,
+    // 1 if the least is 0 or above.
+    holds: u32,
+    unused: f32,
 }
 
 @group(0) @binding(0) var<storage, read> samples: array<Sample>;
@@ -42,5 +43,6 @@ fn probe(@builtin(global_invocation_id) id: vec3<u32>) {
     let rest = (sample.normal.x + sample.offset) - sample.normal.x;
     let value = sample.normal.x * sample.p.x + sample.normal.y * sample.p.y + sample.offset;
     let least = min(min(sample.normal.x, sample.p.x), sample.offset);
-    results[id.x] = Result(product, sum, both, rest, value, least, 0.0, 0.0);
+    let holds = select(0u, 1u, least >= 0.0);
+    results[id.x] = Result(product, sum, both, rest, value, least, holds, 0.0);
 }

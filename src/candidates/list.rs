@@ -17,9 +17,9 @@ pub struct List {
     len: usize,
     /// The square of the distance from the pivot beyond which vertices may be missing.
     reach: f64,
-    /// The square of the distance from the pivot of the first vertex of each group, as its [`key`]; empty where the list is
+    /// The square of the distance from the pivot of the first vertex of each group, as its [`key`]; `None` where the list is
     /// for any pivot.
-    nearest: Box<[u32]>,
+    nearest: Option<Box<[u32]>>,
     /// The last is filled up with NaN, which lies in no triangle.
     pub(super) places: Box<[Places]>,
 }
@@ -44,19 +44,19 @@ impl List {
         let mut near: Vec<u64> = numbers.iter().map(keyed).collect();
         near.sort_unstable();
         let nearest = near.iter().step_by(GROUP).map(|keyed| (keyed >> 32) as u32).collect();
-        Self::new(model, frame, near.iter().map(|&keyed| keyed as u32), nearest, reach)
+        Self::new(model, frame, near.iter().map(|&keyed| keyed as u32), Some(nearest), reach)
     }
 
-    /// All vertices of the model, for queries about any pivot.
-    pub fn all(model: &Model, frame: &Frame) -> Self {
-        Self::new(model, frame, 0..model.vertices().len() as u32, Box::default(), f64::INFINITY)
+    /// The vertices of these numbers, for queries about any pivot.
+    pub fn of_any(model: &Model, frame: &Frame, numbers: impl ExactSizeIterator<Item = u32>) -> Self {
+        Self::new(model, frame, numbers, None, f64::INFINITY)
     }
 
     fn new(
         model: &Model,
         frame: &Frame,
         vertices: impl ExactSizeIterator<Item = u32>,
-        nearest: Box<[u32]>,
+        nearest: Option<Box<[u32]>>,
         reach: f64,
     ) -> Self {
         let empty = Places { x: [f32::NAN; VERTICES], y: [f32::NAN; VERTICES], numbers: [0; VERTICES] };
@@ -81,12 +81,16 @@ impl List {
     /// square root of `squared`, in the scene's unit. O(log vertices).
     #[inline]
     pub fn within(&self, squared: f64) -> usize {
-        if self.nearest.is_empty() {
-            return self.len;
-        }
+        let Some(nearest) = &self.nearest else { return self.len };
         // Both are rounded: to 4 units in the last place each.
         let most = key(squared * (1.0 + 16.0 * f64::EPSILON));
-        (GROUP * self.nearest.partition_point(|&nearest| nearest <= most)).min(self.len)
+        (GROUP * nearest.partition_point(|&nearest| nearest <= most)).min(self.len)
+    }
+
+    /// Whether it is for queries about any pivot.
+    #[inline]
+    pub fn is_of_any(&self) -> bool {
+        self.nearest.is_none()
     }
 
     /// How many vertices it holds.
@@ -122,7 +126,7 @@ impl List {
 
     /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + size_of_val(&*self.nearest) + size_of_val(&*self.places)
+        size_of::<Self>() + size_of_val(self.nearest.as_deref().unwrap_or_default()) + size_of_val(&*self.places)
     }
 
     /// Adds the numbers of the vertices inside the triangle of `query`, of the first `count` or a few more, to `found`. The

@@ -18,12 +18,12 @@ pub const LISTS_BUDGET: usize = 256 << 20;
 /// asked about many times more.
 const WORTH_A_LIST: u32 = 8;
 
-/// How many triangles a look for one query may take before it gives up and all vertices are tried, in scenes where that is
+/// How many triangles a look for one query may take before it gives up and all that remain are tried, in scenes where that is
 /// more than a 64th of the vertices: one triangle takes as long as some 150 vertices.
 const TRIANGLES_A_LOOK: usize = 64;
 
 /// How many triangles the making of a list may look at, in scenes where that is more than a quarter of the vertices: several
-/// times as many as pivots see through where walls hide most of the scene. Pivots that see more try all vertices.
+/// times as many as pivots see through where walls hide most of the scene. Pivots that see more try all that remain.
 const TRIANGLES_A_LIST: usize = 1 << 12;
 
 /// The square of how much further a pivot's first list reaches than the queries before.
@@ -36,10 +36,13 @@ pub struct Lists<'m> {
     keep_all: bool,
     budget: usize,
     worth: u32,
+    /// How many triangles a look and the making of a list may take, if told.
+    most: Option<usize>,
     /// The lowest and highest x and y of all pivots and queries, if they are known.
     reach: Option<(DVec2, DVec2)>,
     visibility: OnceLock<Option<Visibility>>,
     all: OnceLock<Arc<List>>,
+    remaining: OnceLock<Arc<List>>,
     /// By pivot: vertices first, then the anchor.
     entries: Box<[Entry]>,
     bytes: AtomicUsize,
@@ -69,9 +72,11 @@ impl<'m> Lists<'m> {
             keep_all: false,
             budget: LISTS_BUDGET,
             worth: WORTH_A_LIST,
+            most: None,
             reach: None,
             visibility: OnceLock::new(),
             all: OnceLock::new(),
+            remaining: OnceLock::new(),
             entries: (0..=model.vertices().len()).map(|_| Entry::default()).collect(),
             bytes: AtomicUsize::new(0),
             made: AtomicU64::new(0),
@@ -99,6 +104,14 @@ impl<'m> Lists<'m> {
     #[must_use]
     pub fn after(mut self, queries: u32) -> Self {
         self.worth = queries;
+        self
+    }
+
+    /// With looks, and the making of lists, given up after that many triangles: then [`remaining`](Self::remaining) vertices are
+    /// tried.
+    #[must_use]
+    pub fn at_most(mut self, triangles: usize) -> Self {
+        self.most = Some(triangles);
         self
     }
 
@@ -131,6 +144,7 @@ impl<'m> Lists<'m> {
         self.reach = None;
         self.visibility.take();
         self.all.take();
+        self.remaining.take();
         self.entries.iter_mut().for_each(|entry| *entry = Entry::default());
         *self.bytes.get_mut() = 0;
         *self.made.get_mut() = 0;
@@ -156,9 +170,24 @@ impl<'m> Lists<'m> {
         self.bytes.load(Ordering::Relaxed)
     }
 
-    /// The list of all vertices.
+    /// The list of all vertices, for traces that cross walls.
     pub fn all(&self) -> &Arc<List> {
-        self.all.get_or_init(|| Arc::new(List::all(self.model, &self.frame)))
+        let all = 0..self.model.vertices().len() as u32;
+        self.all.get_or_init(|| Arc::new(List::of_any(self.model, &self.frame, all)))
+    }
+
+    /// The list of all vertices at which a rope can turn whose free end keeps to the rules and goes no further than these
+    /// lists were told: that of [`all`](Self::all) where [`keeps_all`](Self::keeps_all). See
+    /// [`Visibility::only_required`].
+    pub fn remaining(&self) -> &Arc<List> {
+        self.remaining.get_or_init(|| {
+            let visibility = if self.keep_all { None } else { self.visibility() };
+            let left_out = |remaining: &Vec<u32>| remaining.len() < self.model.vertices().len();
+            match visibility.map(Visibility::listed).filter(left_out) {
+                Some(remaining) => Arc::new(List::of_any(self.model, &self.frame, remaining.into_iter())),
+                None => Arc::clone(self.all()),
+            }
+        })
     }
 
     /// Whether every pivot has the list of [`all`](Self::all) vertices: because that was asked for, or because the scene
@@ -167,14 +196,20 @@ impl<'m> Lists<'m> {
         self.keep_all || self.visibility().is_none()
     }
 
-    /// A number for `list`, which is that of `pivot`: the pivot, or another for the list of all vertices, whosever it is.
+    /// A number for `list`, which is that of `pivot`: the pivot, or another for each of the lists for any pivot, whosever it
+    /// is.
     pub fn key(&self, pivot: u32, list: &Arc<List>) -> u32 {
-        if Arc::ptr_eq(list, self.all()) { self.keys() as u32 - 1 } else { pivot }
+        let keys = self.keys() as u32;
+        match list.is_of_any() {
+            false => pivot,
+            true if Arc::ptr_eq(list, self.all()) => keys - 1,
+            true => keys - 2,
+        }
     }
 
     /// How many different [`key`](Self::key)s there are.
     pub fn keys(&self) -> usize {
-        self.entries.len() + 1
+        self.entries.len() + 2
     }
 
     /// The list of `pivot` (a vertex, or the number of vertices for the anchor), for queries whose points are all no further
@@ -209,8 +244,8 @@ impl<'m> Lists<'m> {
     /// Adds the candidates of a query about `pivot` to `found`, without a list of its own, and returns how many vertices were
     /// tried.
     ///
-    /// Looks through the triangles of the scene's triangulation in which the query lies, or tries all vertices where that
-    /// is less.
+    /// Looks through the triangles of the scene's triangulation in which the query lies, or tries all that remain where
+    /// that is less.
     pub fn look_into(
         &self,
         pivot: u32,
@@ -219,7 +254,6 @@ impl<'m> Lists<'m> {
         scratch: &mut Scratch,
         found: &mut Vec<u32>,
     ) -> usize {
-        let n = self.model.vertices().len();
         if let Some(visibility) = self.visibility() {
             let [right, left, far] = [query.right, query.left, query.far].map(|h| h.map(f64::from));
             let outside = |p: DVec2| {
@@ -227,22 +261,23 @@ impl<'m> Lists<'m> {
                 let is_outside = |[x, y, offset]: [f64; 3]| u8::from(x * p.x + y * p.y + offset < 0.0);
                 is_outside(right) | is_outside(left) << 1 | is_outside(far) << 2
             };
-            let most = TRIANGLES_A_LOOK.max(n / 64);
+            let most = self.most.unwrap_or(TRIANGLES_A_LOOK.max(self.model.vertices().len() / 64));
             if let Some(tried) = visibility.look_into(pivot, outside, most, scratch, found) {
                 return tried;
             }
         }
         found.clear();
-        self.all().sweep(simd, query, n, found);
-        n
+        let remaining = self.remaining();
+        remaining.sweep(simd, query, remaining.len(), found);
+        remaining.len()
     }
 
     fn visibility(&self) -> Option<&Visibility> {
-        self.visibility.get_or_init(|| Visibility::within(self.model, self.reach())).as_ref()
-    }
-
-    fn reach(&self) -> (DVec2, DVec2) {
-        self.reach.unwrap_or_else(|| self.model.bounds())
+        let made = || match self.reach {
+            Some(reach) => Visibility::within(self.model, reach),
+            None => Visibility::new(self.model),
+        };
+        self.visibility.get_or_init(|| made().map(Visibility::only_required)).as_ref()
     }
 
     #[cold]
@@ -251,7 +286,7 @@ impl<'m> Lists<'m> {
         let (mut scratch, mut seen) = pool().pop().unwrap_or_default();
         let n = self.model.vertices().len();
         let visibility = self.visibility().expect("where there is none, all pivots have one list");
-        let most = TRIANGLES_A_LIST.max(n / 4);
+        let most = self.most.unwrap_or(TRIANGLES_A_LIST.max(n / 4));
         let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
         let looked = if reach == f64::INFINITY {
             visibility.look_into(pivot, |_| 0, most, &mut scratch, &mut seen)
@@ -260,7 +295,7 @@ impl<'m> Lists<'m> {
         };
         let list = match looked {
             Some(_) => Arc::new(List::about(self.model, &self.frame, at, reach, &seen)),
-            None => Arc::clone(self.all()),
+            None => Arc::clone(self.remaining()),
         };
         pool().push((scratch, seen));
         let entry = &self.entries[pivot as usize];
@@ -273,20 +308,15 @@ impl<'m> Lists<'m> {
             }
             entry.wanted.store(0, Ordering::Relaxed);
             entry.used.store(self.made.fetch_add(1, Ordering::Relaxed), Ordering::Relaxed);
-            self.bytes.fetch_add(self.own_bytes(&list), Ordering::Relaxed);
+            self.bytes.fetch_add(own_bytes(&list), Ordering::Relaxed);
             if let Some(shorter) = slot.replace(Arc::clone(&list)) {
-                self.bytes.fetch_sub(self.own_bytes(&shorter), Ordering::Relaxed);
+                self.bytes.fetch_sub(own_bytes(&shorter), Ordering::Relaxed);
             }
         }
         if self.bytes() > self.budget {
             self.drop_some();
         }
         list
-    }
-
-    /// What a list counts for: nothing if it is that of all vertices, which there is once.
-    fn own_bytes(&self, list: &Arc<List>) -> usize {
-        if Arc::ptr_eq(list, self.all()) { 0 } else { list.bytes() }
     }
 
     /// Drops the lists not used for longest until a quarter of the budget is free, so that this is rarely done.
@@ -305,9 +335,14 @@ impl<'m> Lists<'m> {
             }
             let dropped = self.entries[pivot].list.write().unwrap_or_else(PoisonError::into_inner).take();
             self.entries[pivot].wanted.store(0, Ordering::Relaxed);
-            self.bytes.fetch_sub(dropped.map_or(0, |d| self.own_bytes(&d)), Ordering::Relaxed);
+            self.bytes.fetch_sub(dropped.map_or(0, |d| own_bytes(&d)), Ordering::Relaxed);
         }
     }
+}
+
+/// What a list counts for: nothing if it is for any pivot, since those there are once.
+fn own_bytes(list: &List) -> usize {
+    if list.is_of_any() { 0 } else { list.bytes() }
 }
 
 /// Bits for the sides of an octagon about `o` outside which a point lies; all that is within `radius` lies inside.

@@ -15,7 +15,7 @@ use bytemuck::{Pod, Zeroable};
 pub use frame::Frame;
 pub use list::List;
 pub use lists::{LISTS_BUDGET, Lists};
-pub use query::{ARITHMETIC, LONGEST_NORMAL, Query};
+pub use query::{ARITHMETIC, LONGEST_NORMAL, MARGIN, Query};
 pub use simd::{LEGS, Simd};
 pub use window::{Line, Slopes, Window, Wrapping};
 

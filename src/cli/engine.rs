@@ -22,7 +22,8 @@ pub(crate) struct EngineArgs {
     /// The most steps that one query covers; no certified result depends on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     window: Option<u32>,
-    /// Try all wall ends in every query, not only those that the pivot sees; no certified result depends on it
+    /// Try all wall ends in every query, not only those that the pivot sees and a rope can turn at; no certified result
+    /// depends on it
     #[arg(long)]
     keep_all: bool,
 }

@@ -60,6 +60,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         summary.trade(args.trade, model);
     }
     let mut times = evaluate(args, model, batches, &mut *engine, &mut summary)?;
+    summary.learn(&*engine);
     times.total = start.elapsed();
     if args.json { print_json(&summary.json(&times)) } else { print(&summary.table(&times, args.out.is_none())) }
 }

@@ -18,6 +18,8 @@ pub(crate) struct Summary {
     scene: String,
     walls: usize,
     vertices: usize,
+    /// How many of them the engine tries, once it is known.
+    remaining: Option<usize>,
     dropped: usize,
     anchor: [f64; 2],
     on: String,
@@ -91,6 +93,7 @@ impl Summary {
             scene: scene.to_owned(),
             walls: model.scene().walls().len(),
             vertices: model.vertices().len(),
+            remaining: None,
             dropped: model.scene().dropped(),
             anchor: model.anchor().to_array(),
             on,
@@ -107,6 +110,11 @@ impl Summary {
             depth: Counts::default(),
             max_depth: Counts::default(),
         }
+    }
+
+    /// Learns how many vertices the engine has tried, after the last traces.
+    pub(crate) fn learn(&mut self, engine: &dyn Engine) {
+        self.remaining = engine.remaining();
     }
 
     /// What was traded, and the scene as ropes see it.
@@ -147,12 +155,13 @@ impl Summary {
         let [x, y] = self.anchor;
         let events = self.wraps + self.unwraps;
         let mut text = format!(
-            "scene    {}: {} walls with {} ends, anchor ({x}, {y})\n\
+            "scene    {}: {} walls with {} ends{}, anchor ({x}, {y})\n\
              traces   {}, {} steps\n\
              engine   {} ({}) on {}\n",
             self.scene,
             grouped(self.walls as u64),
             grouped(self.vertices as u64),
+            self.tried(),
             grouped(self.traces),
             grouped(self.steps),
             self.engine,
@@ -188,9 +197,21 @@ impl Summary {
         text
     }
 
+    /// How many of the vertices the engine tries, in words that go on.
+    fn tried(&self) -> String {
+        match self.remaining {
+            None => String::new(),
+            Some(all) if all == self.vertices => ", all of which are tried".to_owned(),
+            Some(some) => format!(", {} of which a rope can turn at", grouped(some as u64)),
+        }
+    }
+
     pub(crate) fn json(&self, times: &Times) -> Value {
         json!({
-            "scene": {"name": self.scene, "walls": self.walls, "vertices": self.vertices, "dropped": self.dropped, "anchor": self.anchor},
+            "scene": {
+                "name": self.scene, "walls": self.walls, "vertices": self.vertices, "remaining": self.remaining,
+                "dropped": self.dropped, "anchor": self.anchor,
+            },
             "engine": self.engine, "precision": self.precision, "on": self.on, "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
             "traded": self.traded.as_ref().map(|(trade, traded)| json!({
                 "stride": trade.stride.unwrap_or(1), "simplify": trade.simplify,

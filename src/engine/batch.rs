@@ -51,7 +51,7 @@ pub(super) trait Player: Send {
     ) -> Result<(), Astray>;
 
     /// What the device is to hold of the `list` of which the key is `pivot`.
-    fn coordinates(_: &Lists<'_>, _pivot: u32, list: &Arc<List>) -> Vec<[f32; 2]> {
+    fn coordinates(_: &Lists<'_>, _pivot: u32, list: &List) -> Vec<[f32; 2]> {
         list.coordinates().collect()
     }
 }

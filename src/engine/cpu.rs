@@ -50,7 +50,8 @@ impl<'m> Cpu<'m> {
         self
     }
 
-    /// The same engine, trying all vertices in every query, not only those that the pivot sees.
+    /// The same engine, trying all vertices in every query, not only those that the pivot sees and at which ropes can
+    /// turn.
     #[must_use]
     pub fn keep_all(mut self) -> Self {
         self.lists = self.lists.keep_all();
@@ -82,6 +83,10 @@ impl Engine for Cpu<'_> {
             recent: std::array::from_fn(|_| None),
         };
         traces.par_iter().map_init(lane, |lane, trace| lane.evaluate(trace, job)).collect()
+    }
+
+    fn remaining(&self) -> Option<usize> {
+        Some(self.lists.remaining().len())
     }
 
     fn forget(&mut self) {

@@ -49,7 +49,8 @@ impl<'m> FastGpu<'m> {
         self
     }
 
-    /// The same engine, trying all vertices in every query, not only those that the pivot sees.
+    /// The same engine, trying all vertices in every query, not only those that the pivot sees and at which ropes can
+    /// turn.
     #[must_use]
     pub fn keep_all(mut self) -> Self {
         self.lists = self.lists.keep_all();
@@ -78,6 +79,10 @@ impl Engine for FastGpu<'_> {
 
     fn batch(&self) -> usize {
         HALVES * self.pass.capacity()
+    }
+
+    fn remaining(&self) -> Option<usize> {
+        Some(self.lists.remaining().len())
     }
 
     fn forget(&mut self) {

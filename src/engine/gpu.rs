@@ -51,7 +51,8 @@ impl<'m> Gpu<'m> {
         self.pass.device().summary()
     }
 
-    /// The same engine, trying all vertices in every query, not only those that the pivot sees.
+    /// The same engine, trying all vertices in every query, not only those that the pivot sees and at which ropes can
+    /// turn.
     #[must_use]
     pub fn keep_all(mut self) -> Self {
         self.lists = self.lists.keep_all();
@@ -84,6 +85,10 @@ impl Engine for Gpu<'_> {
 
     fn batch(&self) -> usize {
         HALVES * self.pass.capacity()
+    }
+
+    fn remaining(&self) -> Option<usize> {
+        Some(self.lists.remaining().len())
     }
 
     fn forget(&mut self) {

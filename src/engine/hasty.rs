@@ -153,8 +153,8 @@ impl Player for Hasty {
     }
 
     /// Relative to the pivot where the list is its own, so that what is near is as exact as f32 can say.
-    fn coordinates(lists: &Lists<'_>, pivot: u32, list: &Arc<List>) -> Vec<[f32; 2]> {
-        if Arc::ptr_eq(list, lists.all()) {
+    fn coordinates(lists: &Lists<'_>, pivot: u32, list: &List) -> Vec<[f32; 2]> {
+        if list.is_of_any() {
             return list.coordinates().collect();
         }
         let (model, frame) = (lists.model(), lists.frame());

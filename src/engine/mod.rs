@@ -64,6 +64,13 @@ pub trait Engine {
         BATCH
     }
 
+    /// How many of the model's vertices it tries, that is, at how many a rope can turn within reach of the traces evaluated so
+    /// far; all with `keep_all`. `None` for engines that do not ask. See
+    /// [`Visibility::only_required`](crate::visibility::Visibility::only_required).
+    fn remaining(&self) -> Option<usize> {
+        None
+    }
+
     /// Forgets what was made of the model on the way, so that the next evaluation makes it anew: for measurements.
     fn forget(&mut self) {}
 }

@@ -5,41 +5,41 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// Uniform numbers. Streams of one seed are independent of each other.
-pub(super) struct Draws(ChaCha8Rng);
+pub(crate) struct Draws(ChaCha8Rng);
 
 impl Draws {
     /// The stream in which scenes are drawn: none that a trace has, since traces take their own number.
-    pub(super) const SCENE: u64 = u64::MAX;
+    pub(crate) const SCENE: u64 = u64::MAX;
 
-    pub(super) fn new(seed: u64, stream: u64) -> Self {
+    pub(crate) fn new(seed: u64, stream: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(stream);
         Draws(rng)
     }
 
     /// From 0 up to 1, 1 left out.
-    pub(super) fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// From `-size` to `size`.
-    pub(super) fn within(&mut self, size: f64) -> f64 {
+    pub(crate) fn within(&mut self, size: f64) -> f64 {
         (2.0 * self.unit() - 1.0) * size
     }
 
     /// From `low` to `high`.
-    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// A whole number from `low` to `high`, both included. Numbers as small as a scene's are all as likely, but for the
     /// last of 53 bits.
-    pub(super) fn whole(&mut self, low: i64, high: i64) -> i64 {
+    pub(crate) fn whole(&mut self, low: i64, high: i64) -> i64 {
         low + (self.unit() * (high - low + 1) as f64) as i64
     }
 
     /// A direction, as a vector one long. Made without angles: sines and cosines are not the same on every machine.
-    pub(super) fn direction(&mut self) -> DVec2 {
+    pub(crate) fn direction(&mut self) -> DVec2 {
         loop {
             let way = self.point(1.0);
             if (0.01..=1.0).contains(&way.length_squared()) {
@@ -49,7 +49,7 @@ impl Draws {
     }
 
     /// A point of the square from (-`size`, -`size`) to (`size`, `size`).
-    pub(super) fn point(&mut self, size: f64) -> DVec2 {
+    pub(crate) fn point(&mut self, size: f64) -> DVec2 {
         let x = self.within(size);
         DVec2::new(x, self.within(size))
     }

@@ -8,6 +8,8 @@ mod lattice_walls;
 mod random_walls;
 mod walker;
 
+pub(crate) use draws::Draws;
+
 pub use built_in::{BuiltIn, NameError};
 pub use floor_plan::floor_plan;
 pub use lattice_walls::lattice_walls;

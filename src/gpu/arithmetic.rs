@@ -42,14 +42,16 @@ struct Outcome {
     rest: f32,
     value: f32,
     least: f32,
-    unused: [f32; 2],
+    holds: u32,
+    unused: f32,
 }
 
 /// What a device makes of f32, as far as a few thousand samples show.
 ///
-/// The bound of the candidate pass assumes that a product or sum is one of the two nearest f32, or 0 where it is subnormal,
-/// that products and sums may be fused and put in another order, and that a minimum is one of its arguments. Whether a
-/// device fuses, flushes or reassociates is told because it decides close calls with `--precision fast`.
+/// The bound of the candidate pass ([`MARGIN`](crate::candidates::MARGIN), step 1) assumes that a product or sum is one of the two
+/// nearest f32, that subnormal numbers may be taken for 0, that products and sums may be fused and put in another order, that a
+/// minimum is one of its arguments, and that a comparison with 0 holds for 0 and above. Whether a device fuses, flushes or
+/// reassociates is told because it decides close calls with `--precision fast`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arithmetic {
     /// Whether all products and sums are the nearest f32, not only one of the two nearest.
@@ -96,24 +98,33 @@ impl Arithmetic {
         let exact = normal.as_dvec2().dot(p.as_dvec2()) + f64::from(offset);
         let error = (f64::from(outcome.value) - exact).abs() / ARITHMETIC;
         let least = normal.x.min(p.x).min(offset);
+        let is_least = outcome.least == least || is_subnormal(least.into()) && outcome.least == 0.0;
+        let is_told = match outcome.holds {
+            1 => least > -f32::MIN_POSITIVE,
+            holds => holds == 0 && least < 0.0,
+        };
+        let (nearest, bound) = ("be one of the two nearest f32", format!("be good to {ARITHMETIC:.2e}"));
         let why = if !is_near(outcome.product, product) {
-            Some(("product", outcome.product, product))
+            Some(("product", nearest, format!("{:e}", outcome.product), product))
         } else if !is_near(outcome.sum, sum) {
-            Some(("sum", outcome.sum, sum))
-        } else if !is_near(outcome.least, least.into()) {
-            Some(("minimum", outcome.least, least.into()))
+            Some(("sum", nearest, format!("{:e}", outcome.sum), sum))
+        } else if !is_least {
+            Some(("minimum", "be one of its arguments", format!("{:e}", outcome.least), least.into()))
+        } else if !is_told {
+            Some(("comparison with 0", "hold for 0 and above", outcome.holds.to_string(), least.into()))
         } else if error.is_nan() || error > 1.0 {
-            Some(("value of a half-plane", outcome.value, exact))
+            Some(("value of a half-plane", &*bound, format!("{:e}", outcome.value), exact))
         } else {
             None
         };
-        if let (Some((what, given, right)), None) = (why, &self.fault) {
-            self.fault =
-                Some(format!("its f32 are not what exact ropes rely on: a {what} is {given:e} instead of {right:e}"));
+        if let (Some((what, must, given, exact)), None) = (why, &self.fault) {
+            self.fault = Some(format!(
+                "its f32 are not what exact ropes rely on: a {what} must {must}, but is {given} where {exact:e} is exact"
+            ));
         }
         self.largest_error = self.largest_error.max(error);
-        self.flushes |= outcome.product == 0.0 && product != 0.0 && product.abs() < NORMAL;
         let is_flushed = product.abs() < NORMAL;
+        self.flushes |= outcome.product == 0.0 && is_subnormal(product);
         self.rounds_to_nearest &= (is_flushed || outcome.product == product as f32) && outcome.sum == sum as f32;
         let (once, twice) = (normal.x.mul_add(p.x, offset), normal.x * p.x + offset);
         self.fuses |= once != twice && outcome.both == once;
@@ -122,13 +133,22 @@ impl Arithmetic {
     }
 }
 
+/// Whether f32 has at most a subnormal number for it, and it is not 0.
+fn is_subnormal(exact: f64) -> bool {
+    exact != 0.0 && exact.abs() < NORMAL
+}
+
 /// Whether `result` is one of the two f32 nearest to `exact`, or 0 for a subnormal one.
 fn is_near(result: f32, exact: f64) -> bool {
     let error = (f64::from(result) - exact).abs();
     error <= exact.abs() * f64::from(f32::EPSILON) || (exact.abs() < NORMAL && error <= NORMAL)
 }
 
-/// Half-planes and points close to their lines, where rounding counts most; some have subnormal products.
+/// Normals that are close to 0 or subnormal themselves, and 0 from either side.
+const SMALL: [f32; 8] =
+    [0.0, -0.0, 1e-40, -1e-40, f32::from_bits(1), -f32::from_bits(1), f32::MIN_POSITIVE, -f32::MIN_POSITIVE];
+
+/// Half-planes and points close to their lines, where rounding counts most; some have subnormal products or coordinates.
 fn samples() -> Vec<Sample> {
     let mut state = 1u64;
     // SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), from -1 to 1.
@@ -146,11 +166,17 @@ fn samples() -> Vec<Sample> {
         let close = draw() * 2f64.powi(-(i as i32 % 24));
         let offset = (close - normal.as_dvec2().dot(p.as_dvec2())) as f32;
         let sample = Sample { normal, p, offset, unused: [0.0; 3] };
-        if !i.is_multiple_of(16) {
-            return sample;
-        }
         let (tiny, less) = (2f32.powi(-100), 2f32.powi(-30));
-        Sample { normal: Vec2::new(normal.x * tiny, 0.0), p: Vec2::new(p.x * less, p.y), offset: 0.0, ..sample }
+        match i % 16 {
+            0 => {
+                Sample { normal: Vec2::new(normal.x * tiny, 0.0), p: Vec2::new(p.x * less, p.y), offset: 0.0, ..sample }
+            }
+            8 => {
+                let small = SMALL[i / 16 % SMALL.len()];
+                Sample { normal: Vec2::new(small, normal.y), p: Vec2::new(1.0, p.y), offset: 1.0, ..sample }
+            }
+            _ => sample,
+        }
     };
     (0..SAMPLES).map(sample).collect()
 }

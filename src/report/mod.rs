@@ -2,8 +2,9 @@
 
 pub mod bench;
 mod environment;
-mod note;
 pub mod extremes;
+pub mod filter;
+mod note;
 mod spread;
 pub mod tradeoff;
 

@@ -41,7 +41,7 @@ pub(super) struct Mesh {
     /// The vertex of each pivot, the model's vertices and then the anchor, or [`ABSENT`].
     pivots: Vec<u32>,
     triangles: Vec<Triangle>,
-    /// The half-edges that start at each vertex, and where each vertex's begin.
+    /// The half-edges that start at each vertex, in triangles in which looks start, and where each vertex's begin.
     fans: Vec<u32>,
     first_fan: Vec<u32>,
 }
@@ -200,6 +200,27 @@ impl Mesh {
         }
     }
 
+    /// Leaves the triangles of which it does not hold out of all fans, so that looks never start into them.
+    pub(super) fn start_only_in(&mut self, is_kept: &[bool]) {
+        let (mut kept, mut first) = (0, 0);
+        for v in 0..self.vertices.len() {
+            let end = self.first_fan[v + 1] as usize;
+            self.first_fan[v] = kept as u32;
+            for i in first..end {
+                self.fans[kept] = self.fans[i];
+                kept += usize::from(is_kept[self.fans[i] as usize / 4]);
+            }
+            first = end;
+        }
+        self.first_fan[self.vertices.len()] = kept as u32;
+        self.fans.truncate(kept);
+    }
+
+    /// Makes a vertex one that is none of the model's, as far as looks tell.
+    pub(super) fn forget_name(&mut self, vertex: u32) {
+        self.names[vertex as usize] = ABSENT;
+    }
+
     pub(super) fn at(&self, vertex: u32) -> DVec2 {
         self.vertices[vertex as usize]
     }
@@ -208,6 +229,11 @@ impl Mesh {
     /// not in the mesh.
     pub(super) fn pivot(&self, pivot: u32) -> Option<u32> {
         Some(self.pivots[pivot as usize]).filter(|&v| v != ABSENT)
+    }
+
+    /// The number of the anchor as a pivot, which is in the mesh.
+    pub(super) fn anchor(&self) -> u32 {
+        self.pivots.len() as u32 - 1
     }
 
     /// The walls in the mesh.
@@ -237,11 +263,6 @@ impl Mesh {
         self.triangles.len()
     }
 
-    /// The triangles beyond the edges of one, where these are not closed.
-    pub(super) fn neighbours(&self, triangle: u32) -> [Option<u32>; 3] {
-        [0, 1, 2].map(|i| Some(self.edge(4 * triangle + i).twin).filter(|&twin| twin != CLOSED).map(|twin| twin / 4))
-    }
-
     #[inline]
     pub(super) fn edge(&self, edge: u32) -> HalfEdge {
         self.triangles[edge as usize / 4].0[edge as usize % 4]
@@ -254,7 +275,7 @@ impl Mesh {
         [edges[next(edge) as usize % 4], edges[next(next(edge)) as usize % 4]]
     }
 
-    /// The half-edges that start at `vertex`, one in each triangle round it.
+    /// The half-edges that start at `vertex`, one in each triangle round it in which looks start.
     pub(super) fn fan(&self, vertex: u32) -> &[u32] {
         &self.fans[self.first_fan[vertex as usize] as usize..self.first_fan[vertex as usize + 1] as usize]
     }

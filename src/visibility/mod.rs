@@ -8,6 +8,7 @@ mod crossings;
 mod expand;
 mod mesh;
 mod places;
+mod required;
 
 use glam::DVec2;
 
@@ -23,13 +24,15 @@ pub struct Visibility {
     /// The far ends of the walls that meet at each vertex of the mesh, and where each vertex's begin.
     ends: Vec<u32>,
     first_end: Vec<u32>,
+    /// The box out of which no free end goes, if there is one.
+    reach: Option<(DVec2, DVec2)>,
 }
 
 impl Visibility {
     /// Triangulates the model; `None` where the triangulation cannot take its coordinates (they span more than 140
     /// binary orders of magnitude). O(n log n) for walls that do not cross.
     pub fn new(model: &Model) -> Option<Self> {
-        Self::within(model, model.bounds())
+        Self::of(model, model.bounds(), None)
     }
 
     /// Triangulates only the walls near the box between `reach`'s lowest and highest x and y, for looks inside it: what they
@@ -38,7 +41,11 @@ impl Visibility {
     ///
     /// A taut rope never leaves the smallest box around its trace and the anchor.
     pub fn within(model: &Model, reach: (DVec2, DVec2)) -> Option<Self> {
-        let mesh = Mesh::new(model, reach)?;
+        Self::of(model, reach, Some(reach))
+    }
+
+    fn of(model: &Model, near: (DVec2, DVec2), reach: Option<(DVec2, DVec2)>) -> Option<Self> {
+        let mesh = Mesh::new(model, near)?;
         let n = mesh.len();
         let mut first_end = vec![0; n + 1];
         for &v in mesh.walls().iter().flatten() {
@@ -55,7 +62,7 @@ impl Visibility {
                 next[here as usize] += 1;
             }
         }
-        Some(Visibility { mesh, ends, first_end })
+        Some(Visibility { mesh, ends, first_end, reach })
     }
 
     /// Writes the vertices that the rope can wrap round next from `pivot` (a vertex, or the number of vertices for the

@@ -20,8 +20,13 @@ impl Visibility {
     /// The triangles that can be reached from `pivot` without crossing a wall, in no particular order; none if it lies out of
     /// reach. Where walls cross at a point that no f64 names, some that cannot be reached may be among them. O(triangles).
     pub(crate) fn reached(&self, pivot: u32) -> Vec<u32> {
+        self.reached_through(pivot, |_| true)
+    }
+
+    /// The same through edges only for whose number it holds.
+    pub(super) fn reached_through(&self, pivot: u32, is_passed: impl Fn(u32) -> bool) -> Vec<u32> {
         let Some(o) = self.mesh.pivot(pivot) else { return Vec::new() };
-        self.flood(self.mesh.fan(o).iter().map(|edge| edge / 4).collect(), |_| true)
+        self.flood(self.mesh.fan(o).iter().map(|edge| edge / 4).collect(), is_passed)
     }
 
     /// What can be reached from `at`, which lies in no wall, between its ends; from a wall's end, that is all round it. The
@@ -47,20 +52,24 @@ impl Visibility {
             marks
         };
         let sure = around.iter().copied().filter(|&triangle| is_sure(triangle)).collect();
-        Reach { surely: marked(self.flood(sure, is_sure)), perhaps: marked(self.flood(around, |_| true)) }
+        let surely = self.flood(sure, |edge| is_sure(self.mesh.edge(edge).twin / 4));
+        Reach { surely: marked(surely), perhaps: marked(self.flood(around, |_| true)) }
     }
 
-    /// `triangles`, and all that are reached from them without crossing a wall or entering one that may not be entered.
-    fn flood(&self, mut triangles: Vec<u32>, may_enter: impl Fn(u32) -> bool) -> Vec<u32> {
+    /// `triangles`, and all that are reached from them without crossing a wall, through edges only for whose number `is_passed`
+    /// holds.
+    fn flood(&self, mut triangles: Vec<u32>, is_passed: impl Fn(u32) -> bool) -> Vec<u32> {
         let mut is_reached = vec![false; self.mesh.triangles()];
         for &triangle in &triangles {
             is_reached[triangle as usize] = true;
         }
         let mut done = 0;
         while done < triangles.len() {
-            for beyond in self.mesh.neighbours(triangles[done]).into_iter().flatten() {
-                if !std::mem::replace(&mut is_reached[beyond as usize], true) && may_enter(beyond) {
-                    triangles.push(beyond);
+            for edge in 4 * triangles[done]..4 * triangles[done] + 3 {
+                let twin = self.mesh.edge(edge).twin;
+                if twin != CLOSED && !is_reached[twin as usize / 4] && is_passed(edge) {
+                    is_reached[twin as usize / 4] = true;
+                    triangles.push(twin / 4);
                 }
             }
             done += 1;

@@ -17,14 +17,27 @@ fn the_software_adapter_is_fit_for_exact_ropes() {
 }
 
 /// Each makes the device another one, and what that is found to be.
-const FAULTS: [(&str, &str, &str); 5] = [
+const FAULTS: [(&str, &str, &str); 8] = [
     (
         "let product = sample.normal.x * sample.p.x;",
         "let product = sample.normal.x * sample.p.x * 1.0000002;",
         "a product",
     ),
     ("let sum = sample.normal.x + sample.offset;", "let sum = sample.normal.x + sample.offset * 1.000001;", "a sum"),
-    ("min(min(", "max(min(", "a minimum"),
+    ("min(min(", "max(min(", "a minimum must be one of its arguments"),
+    // Less than a unit in the last place off.
+    (
+        "min(min(sample.normal.x, sample.p.x), sample.offset);",
+        "min(min(sample.normal.x, sample.p.x), sample.offset) * 1.0000001;",
+        "a minimum must be one of its arguments",
+    ),
+    ("least >= 0.0", "least > 0.0", "a comparison with 0 must hold for 0 and above"),
+    // What is subnormal may be taken for 0, but for nothing else.
+    (
+        "let product = sample.normal.x * sample.p.x;",
+        "let product = select(sample.normal.x, 1.0, (bitcast<u32>(sample.normal.x) & 0x7f800000u) == 0u) * sample.p.x;",
+        "a product must be one of the two nearest f32",
+    ),
     // As with 16 bits.
     (
         "sample.normal.y * sample.p.y + sample.offset;",
@@ -60,7 +73,7 @@ fn ways_of_rounding_are_found_out() {
     assert!(!down.rounds_to_nearest);
     let reordered = found("(sample.normal.x + sample.offset) - sample.normal.x;", "sample.offset;");
     assert!(reordered.reassociates && reordered.fault.is_none(), "{reordered:?}");
-    let tiny = "select(0.0, sample.normal.x * sample.p.x, abs(sample.normal.x * sample.p.x) > 1e-30)";
+    let tiny = "select(0.0, sample.normal.x * sample.p.x, abs(sample.normal.x * sample.p.x) >= 1.1754944e-38)";
     let flushed = found("let product = sample.normal.x * sample.p.x;", &format!("let product = {tiny};"));
     assert!(flushed.flushes && flushed.fault.is_none(), "{flushed:?}");
     assert!(Arithmetic::of(&device, "this is no shader").is_err());

@@ -190,7 +190,8 @@ fn proceed(
     let spent = ended?;
     parts.map_or(Ok(()), |parts| parts.finish(state.traces()))?;
     let done = [state.traces() - traces_before, job.steps()];
-    let run = cost(&state, name, &on, start.elapsed(), &spent, done);
+    let mut run = cost(&state, name, &on, start.elapsed(), &spent, done);
+    run["scene"] = tried(study, &engines);
     conclude(folder, study, &state, &run, as_json)
 }
 
@@ -250,6 +251,12 @@ fn cost(
             "tallying": spent.tallied,
         },
     })
+}
+
+/// How many wall ends the scene has, and how many of them the engine of each anchor tries.
+fn tried(study: &Study, engines: &[Box<dyn Engine + '_>]) -> serde_json::Value {
+    let remaining: Option<Vec<usize>> = engines.iter().map(|engine| engine.remaining()).collect();
+    json!({"vertices": study.models()[0].vertices().len(), "remaining": remaining})
 }
 
 /// Writes and prints the answer. Exit code 5 if it is not as certain as was asked for.

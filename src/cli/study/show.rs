@@ -61,6 +61,11 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
         let run = &summary.study.run;
         line(format_args!("traded: {}", trade::words(run.stride, run.simplify, traded)));
     }
+    let most =
+        run.and_then(|run| run["scene"]["remaining"].as_array()?.iter().filter_map(serde_json::Value::as_u64).max());
+    if let (Some(tried), Some(all)) = (most, run.and_then(|run| run["scene"]["vertices"].as_u64())) {
+        line(format_args!("{} of {} wall ends tried", grouped(tried), grouped(all)));
+    }
     let confidence = 100.0 * summary.study.tallies.confidence;
     line(format_args!(
         "\n{:12}{:>12}  {:>24}{:>10}{:>10}{:>10}",

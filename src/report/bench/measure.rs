@@ -40,6 +40,8 @@ pub struct Row {
     pub setting: Setting,
     /// The number of vertices.
     pub n: usize,
+    /// How many of them the engine tries; see [`Engine::remaining`].
+    pub remaining: Option<usize>,
     /// On how many of the traces it ran.
     pub traces: usize,
     /// How many steps of each: all, or the first.
@@ -230,6 +232,7 @@ impl<'w> Lane<'w> {
             contender,
             setting: work.setting.clone(),
             n,
+            remaining: self.runner.remaining(),
             traces: self.runner.traces().len(),
             steps: self.runner.steps_a_trace(),
             ns_per_step,

@@ -114,6 +114,11 @@ impl<'w> Runner<'w> {
         self.short.is_some()
     }
 
+    /// How many of the scene's vertices its engine tries.
+    pub(super) fn remaining(&self) -> Option<usize> {
+        self.engine.remaining()
+    }
+
     /// How long the sample takes, in seconds; never 0.
     fn sample(&mut self) -> Result<f64, EngineError> {
         Ok(self.evaluate(&Job::new())?.0.as_secs_f64().max(1e-9))

@@ -39,6 +39,11 @@ fn all_engines_stand_side_by_side() {
             assert_eq!(row[key], value, "{row}");
         }
         assert_eq!(row["batch"], 6, "{row}");
+        match (row["engine"].as_str(), row["variant"].as_str()) {
+            (Some("gpu"), Some("window 1, all vertices")) => assert_eq!(row["remaining"], 80, "{row}"),
+            (Some("gpu" | "cpu"), _) => assert!((1..=80).contains(&row["remaining"].as_u64().unwrap()), "{row}"),
+            _ => assert!(row["remaining"].is_null(), "{row}"),
+        }
         let [traces, steps, threads] = ["traces", "steps", "threads"].map(|key| row[key].as_u64().unwrap());
         assert!((1..=6).contains(&traces) && (1..=60).contains(&steps) && threads > 0, "{row}");
         assert_spread(&row["ns_per_step"]);

@@ -14,7 +14,7 @@ fn eval_alone_shows_the_example() {
     let folder = Folder::new();
     let shown = folder.done("eval");
     for part in [
-        "the built-in floor plan: 467 walls with 503 ends, anchor (24.3, 9.2)\n",
+        "the built-in floor plan: 467 walls with 503 ends, 466 of which a rope can turn at, anchor (24.3, 9.2)\n",
         "traces   4,000, 2,000,000 steps\n",
         "rope length at the end",
         "steps/s\n",
@@ -56,9 +56,13 @@ fn eval_sums_up_in_a_table() {
 fn eval_sums_up_in_json() {
     let folder = Folder::hand_made();
     let report = report(&folder, "eval --scene s.geojson --traces t.csv --json --engine gpu --adapter software");
-    let scene = json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0]});
+    let scene = |remaining: Value| {
+        json!({
+            "name": "s.geojson", "walls": 2, "vertices": 4, "remaining": remaining, "dropped": 0, "anchor": [0.0, 0.0],
+        })
+    };
     for (field, expected) in [
-        ("scene", scene),
+        ("scene", scene(json!(4))),
         ("engine", json!("gpu")),
         ("precision", json!("certified")),
         ("version", json!(env!("CARGO_PKG_VERSION"))),
@@ -76,6 +80,24 @@ fn eval_sums_up_in_json() {
     }
     assert!(report["on"].as_str().unwrap().contains("software"), "{}", report["on"]);
     assert!(report["steps_per_second"].as_f64().unwrap() > 0.0);
+    let by_reference = self::report(&folder, "eval --scene s.geojson --traces t.csv --json --engine reference");
+    assert_eq!(by_reference["scene"], scene(Value::Null));
+}
+
+#[test]
+fn eval_says_how_many_wall_ends_are_tried() {
+    let folder = Folder::hand_made();
+    // A box round the anchor, and one out of reach.
+    folder.write("room.wkt", "POLYGON ((-1 -1, 1 -1, 1 1, -1 1, -1 -1))\nPOLYGON ((8 8, 9 8, 9 9, 8 9, 8 8))");
+    folder.write("in.csv", "trace,x,y\n0,0.5,0.5\n0,-0.5,0.25\n");
+    for (args, tried) in [
+        ("--scene s.geojson --traces t.csv", "2 walls with 4 ends, all of which are tried, anchor"),
+        ("--scene room.wkt --anchor 0,0 --traces in.csv", "8 walls with 8 ends, 0 of which a rope can turn at, anchor"),
+        ("--scene room.wkt --anchor 0,0 --traces in.csv --keep-all", "8 ends, all of which are tried, anchor"),
+    ] {
+        let shown = folder.done(&format!("eval {args} --engine cpu")).stdout;
+        assert!(shown.contains(tried), "{tried:?} is missing in\n{shown}");
+    }
 }
 
 #[test]

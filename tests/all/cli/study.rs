@@ -48,10 +48,16 @@ fn the_answer_is_the_same_on_all_engines_threads_and_shards() {
     let summary = json(&folder, "a/summary.json");
     assert_eq!((summary["traces"].as_u64(), summary["blocks"].as_u64()), (Some(5350), Some(22)));
     assert!(summary["events"].as_u64().unwrap() > 1000 && !summary["obstacles"].as_array().unwrap().is_empty());
-    for (out, engine) in [("reference", "reference"), ("gpu", "gpu --adapter software")] {
+    for (out, engine) in [("reference", "reference"), ("gpu", "gpu --adapter software"), ("all", "cpu --keep-all")] {
         folder.done(&format!("study run s.toml --out {out} --engine {engine}"));
         assert!(answer(&folder, out) == truth, "{engine}");
     }
+    let [scene, by_reference, with_all] = ["a", "reference", "all"].map(|out| {
+        let scene = json(&folder, &format!("{out}/run.json"))["scene"].take();
+        [scene["vertices"].as_u64(), scene["remaining"][0].as_u64()]
+    });
+    assert!(scene[1] > Some(0) && scene[1] < scene[0], "{scene:?}");
+    assert_eq!((by_reference, with_all), ([scene[0], None], [scene[0]; 2]));
     let one = Finished::of(folder.command("study run s.toml --out one").env("RAYON_NUM_THREADS", "1"));
     assert_eq!(one.code, Some(0), "{}", one.stderr);
     assert!(answer(&folder, "one") == truth, "one thread");
