@@ -11,11 +11,14 @@ use std::path::Path;
 use std::process::Command;
 
 use glam::DVec2;
+use rayon::prelude::*;
+use tautline::candidates::Simd;
 use tautline::engine::{Cpu, Engine, Job};
-use tautline::example::{BuiltIn, Walker};
+use tautline::example::{BuiltIn, Walker, settled_walks};
 use tautline::gpu::{AdapterChoice, Device};
 use tautline::report::bench::BenchScene;
 use tautline::report::extremes::{HEAD, errors};
+use tautline::report::filter::{Filter, Trial};
 use tautline::report::{NoteErrors, note_errors};
 use tautline::scene::{Model, Scene, read_scene};
 use tautline::trace::{Trace, settle};
@@ -44,6 +47,8 @@ fn main() -> Result<()> {
     replace(&mut page, "extremes", &extremes()?)?;
     eprintln!("what is not worth trading");
     replace(&mut page, "depth", &depth()?)?;
+    eprintln!("the filter");
+    replace(&mut page, "filter", &filter()?)?;
     std::fs::write(PAGE, page)?;
     Ok(())
 }
@@ -73,12 +78,14 @@ fn tradeoff(name: &str, args: &str) -> Result<String> {
     Ok(format!("    tautline {command}\n\n![Time against error: {name}]({picture})\n\n```text\n{table}```\n"))
 }
 
+/// A scene of the tests.
+fn file(name: &str, anchor: Option<[f64; 2]>) -> Result<Model> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(name);
+    Ok(Model::new(read_scene(&path)?, anchor.map(Into::into))?)
+}
+
 /// How often the note's listing goes wrong, by the length of a step.
 fn note() -> Result<String> {
-    let file = |name: &str, anchor: Option<[f64; 2]>| -> Result<Model> {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(name);
-        Ok(Model::new(read_scene(&path)?, anchor.map(Into::into))?)
-    };
     let built_in = |scene: BuiltIn| -> Result<(Model, f64)> {
         Ok((Model::new(scene.scene(1), None)?, BenchScene::BuiltIn(scene).step()))
     };
@@ -149,6 +156,28 @@ fn depth() -> Result<String> {
             best = best.min(start.elapsed().as_nanos() as f64 / f64::from(times) / f64::from(16 * turns));
         }
         writeln!(text, "| {turns} | {contacts} | {best:.0} |")?;
+    }
+    Ok(text)
+}
+
+/// What the candidate pass names, and what of that is in vain.
+fn filter() -> Result<String> {
+    let trials: Vec<Filter> = (0..8192).into_par_iter().map(|i| Trial::new(20, i).swept(Simd::detected())).collect();
+    let random = Model::new(BuiltIn::Random(500).scene(1), None)?;
+    let walks = |model: &Model, step| {
+        Filter::of_walks(model, &settled_walks(model, Walker { step, steps: 500, seed: 1 }, 2000))
+    };
+    let rows = [
+        ("near-degenerate", trials.into_iter().sum()),
+        ("walks in random-500", walks(&random, 0.01)?),
+        ("walks along the Aegean coast", walks(&file("aegean.geojson", None)?, 0.5)?),
+    ];
+    let mut text = String::from(
+        "| queries | | vertices tried | named | of those in vain | in a swept triangle | missed |\n|---|---|---|---|---|---|---|\n",
+    );
+    for (name, filter) in rows {
+        let (Filter { queries, tried, named, inside, missed, .. }, share) = (filter, 100.0 * filter.false_share());
+        writeln!(text, "| {name} | {queries} | {tried} | {named} | {share:.3} % | {inside} | {missed} |")?;
     }
     Ok(text)
 }
