@@ -7,8 +7,8 @@
 //!
 //! Data flows one way: a [`scene`] and its anchor make a [`Model`](scene::Model); a [`trace`] is checked against the model
 //! and settled; an [`engine`] turns settled traces into [`TraceRecord`](rope::TraceRecord)s; [`output`] writes them. [`report`]
-//! measures engines against each other; a [`study`] draws very many traces and says what their ropes are like; a
-//! [`picture`] shows them.
+//! measures engines against each other; [`simplify`] leaves wall ends out of a scene for speed; a [`study`] draws very many
+//! traces and says what their ropes are like; a [`picture`] shows them.
 //!
 //! ```
 //! use tautline::engine::{Engine, Job, Reference};

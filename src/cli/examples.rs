@@ -4,7 +4,8 @@ pub(super) const EVAL: &str = "Examples:
   tautline eval                                              the built-in example
   tautline eval --scene plan.geojson --traces drags.csv --out ropes.parquet
   tautline eval --scene plan.geojson --traces drags.csv --events events.jsonl --json
-  tautline eval --scene arena.map --anchor 20.5,10.5 --traces drags.csv --engine gpu";
+  tautline eval --scene arena.map --anchor 20.5,10.5 --traces drags.csv --engine gpu
+  tautline eval --scene coast.geojson --traces drags.csv --stride 4 --simplify 0.5      faster, nearly right";
 
 pub(super) const CHECK: &str = "Examples:
   tautline check --scene plan.geojson
@@ -54,6 +55,7 @@ pub(crate) const STUDY_RUN: &str = "Examples:
   tautline study run                                         the built-in example
   tautline study run mine.toml --dry-run                     is it sound, and what would it cost?
   tautline study run mine.toml --traces 1000000
+  tautline study run mine.toml --stride 4 --simplify 0.5     faster, and nearly right
   tautline study run mine.toml --shard 0/4 --out part0";
 
 pub(crate) const STUDY_RESUME: &str = "Examples:

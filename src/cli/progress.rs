@@ -78,6 +78,15 @@ pub(crate) fn with_progress<T>(progress: &Progress, job: &Job, work: impl FnOnce
     })
 }
 
+/// A bar that counts runs of a measurement.
+pub(crate) fn runs(total: u64) -> ProgressBar {
+    let bar = ProgressBar::new(total);
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} runs, {elapsed}, {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,13 +103,4 @@ mod tests {
         unknown.begin(7, 3);
         assert!(unknown.parts(3) >= PARTS);
     }
-}
-
-/// A bar that counts runs of a measurement.
-pub(crate) fn runs(total: u64) -> ProgressBar {
-    let bar = ProgressBar::new(total);
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} runs, {elapsed}, {msg}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar.enable_steady_tick(Duration::from_millis(200));
-    bar
 }

@@ -57,7 +57,7 @@ mod tests {
         assert_eq!(near.inside([0, 1, 2].map(corner)), None);
         // In one line.
         assert_eq!(near.inside([0, 1, 5].map(corner)), None);
-        assert_eq!(near.inside([0, 5, 2].map(corner)), Some(1));
+        assert_eq!(near.inside([0, 5, 5].map(corner)), Some(1));
         let near = Near::new(points.into_iter().take(4));
         assert_eq!(near.inside([1, 2, 1].map(corner)), Some(3));
     }

@@ -322,10 +322,12 @@ fn what_stands_in_the_way_is_left_in_peace() {
 
 #[test]
 fn what_waits_for_another_goes_after_it() {
-    // The lower hill stands in the higher, and costs less.
-    let hills = [line(&[[0.0, 0.0], [5.0, 2.0], [10.0, 0.0]]), line(&[[2.0, -1.0], [5.0, 0.5], [8.0, -1.0]])].concat();
-    assert_eq!(left(hills.clone(), &[[5.0, 9.0]], 2.0).len(), 4);
-    assert_eq!(left(hills, &[[5.0, 9.0], [5.0, -0.5]], 2.0).len(), 6);
+    // The spike stands in the hill, and costs more.
+    let both = [line(&[[0.0, 0.0], [5.0, 1.0], [10.0, 0.0]]), line(&[[4.9, -3.0], [5.0, 0.5], [5.1, -3.0]])].concat();
+    assert_eq!(left(both.clone(), &[[5.0, 9.0]], 4.0).len(), 4);
+    assert_eq!(left(both.clone(), &[[5.0, 9.0]], 2.0).len(), 6);
+    // With an anchor in it, the spike stays, and so does the hill.
+    assert_eq!(left(both, &[[5.0, 9.0], [5.0, -1.0]], 4.0).len(), 6);
 }
 
 #[test]
