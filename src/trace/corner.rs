@@ -47,6 +47,8 @@ impl Corner {
         }
         towards.sort_by(|&p, &q| by_angle(at, p, q));
         towards.dedup_by(|p, q| by_angle(at, *p, *q).is_eq());
+        // Thousands of walls may lie on each other here, and at thousands of other vertices that a step passes.
+        towards.shrink_to_fit();
         Corner { at, towards }
     }
 
@@ -139,4 +141,19 @@ fn by_angle(at: DVec2, p: DVec2, q: DVec2) -> Ordering {
             Ordering::Equal
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn walls_on_each_other_take_no_more_room_than_one() {
+        let at = DVec2::ZERO;
+        let walls = (1..=1000).map(|k| [at, DVec2::new(f64::from(k), 0.0)]);
+        let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(0.0, -1.0))).unwrap();
+        let corner = Corner::new(&model, at);
+        assert_eq!((corner.towards.len(), corner.towards.capacity()), (1, 1));
+    }
 }
