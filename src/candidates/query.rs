@@ -30,10 +30,10 @@ use super::Frame;
 /// 5. *A leg in f64.* The sides are swapped only where the sign of the product of its ends is wrong: where these lie on one line with O
 ///    but for an angle of 4 x 2^-53. Either P is then that close to both sides (at an angle near 0), or the triangle is
 ///    flat and no point of it is further from the sides than 4 x 2^-53 of 2.83 and of the shorter way; beyond a right angle ways
-///    have no more than [`LONGEST`] sqrt(2) = 2^20.5: less than 2^-30.4. The far side is put behind both ends, whatever its
+///    have no more than `LONGEST` sqrt(2) = 2^20.5: less than 2^-30.4. The far side is put behind both ends, whatever its
 ///    direction, so all of the triangle lies before it; each end's distance is good to 4 x 2^-53 of its way, 2^-30.5 beyond a right
 ///    angle; below one the way is at most sqrt(2) times an offset of 6.6 or less, or step 6 holds. Together less than 2^-30.
-/// 6. *The offset is clamped* to [`FAR`] = 4. A normal's length is at most sqrt(1 + 1.5^2) < 1.81 ([`LONGEST_NORMAL`]), so |n . p| is
+/// 6. *The offset is clamped* to `FAR` = 4. A normal's length is at most sqrt(1 + 1.5^2) < 1.81 ([`LONGEST_NORMAL`]), so |n . p| is
 ///    at most 1.81 sqrt(2) < 2.56. Where it was more than 4, the value is still above 4 - 2.56 less all errors; where it was less
 ///    than -4, P could not be inside.
 /// 7. *Rounding to f32*, to the nearest: each coordinate of p, at most 1, by 2^-25, together with |n| at most 1.81 sqrt(2) 2^-25 =

@@ -3,7 +3,7 @@
 
 use proptest::prelude::ProptestConfig;
 use rayon::prelude::*;
-use tautline::candidates::{LISTS_BUDGET, MARGIN, Simd};
+use tautline::candidates::{LISTS_BUDGET, Lists, MARGIN, Simd};
 use tautline::example::{Walker, random_walls, settled_walks};
 use tautline::gpu::{GpuPass, SWEEP_WGSL, Tuning};
 use tautline::report::filter::{Filter, QUERIES, Trial};
@@ -75,4 +75,14 @@ fn no_walk_meets_a_vertex_that_its_queries_miss() {
         assert!(found.queries > 1000 && found.inside > 100 && found.named < found.tried / 10, "{name}: {found:?}");
         assert!(found.missed == 0 && found.false_share() < 0.05, "{name}: {found:?}");
     }
+}
+
+/// The NaN by which lists fill up their last block stay on the CPU.
+#[test]
+fn devices_are_given_numbers_only() {
+    let model = Model::new(random_walls(9, 1), None).unwrap();
+    let lists = Lists::new(&model);
+    let given: Vec<[f32; 2]> = lists.all().coordinates().collect();
+    assert_eq!(given.len(), 18);
+    assert!(given.iter().flatten().all(|x| x.abs() <= 1.0), "{given:?}");
 }
