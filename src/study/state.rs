@@ -17,6 +17,7 @@ const MAGIC: &[u8] = b"tautline study state 2\n";
 
 /// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "(u32, u32)")]
 pub struct Shard {
     number: u32,
     of: u32,
@@ -44,6 +45,14 @@ impl Shard {
     /// How many of `blocks` blocks are its own.
     pub fn count(self, blocks: u64) -> u64 {
         (blocks + u64::from(self.of) - 1).saturating_sub(u64::from(self.number)) / u64::from(self.of)
+    }
+}
+
+impl TryFrom<(u32, u32)> for Shard {
+    type Error = String;
+
+    fn try_from((number, of): (u32, u32)) -> Result<Shard, String> {
+        Shard::new(number, of).ok_or_else(|| format!("there is no shard {number}/{of}"))
     }
 }
 
@@ -220,6 +229,16 @@ pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_shard_that_cannot_be_is_not_read() {
+        let read = |bytes: [u8; 2]| postcard::from_bytes::<Shard>(&bytes);
+        let shard = Shard { number: 1, of: 3 };
+        assert_eq!((read([1, 3]).unwrap(), postcard::to_stdvec(&shard).unwrap()), (shard, vec![1, 3]));
+        for nowhere in [[0, 0], [3, 3]] {
+            assert!(read(nowhere).is_err());
+        }
+    }
 
     #[test]
     fn shards_share_out_all_blocks() {
