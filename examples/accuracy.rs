@@ -67,7 +67,7 @@ fn tradeoff(name: &str, args: &str) -> Result<String> {
     let picture = format!("accuracy/{name}.svg");
     let out = Path::new(PAGE).with_file_name(&picture);
     std::fs::create_dir_all(out.parent().ok_or("no folder")?)?;
-    let command = format!("tradeoff {args} --adapter software");
+    let command = format!("tradeoff {args} --seconds 0.4 --adapter software");
     let mut program = Command::new(env!("CARGO"));
     program.current_dir(env!("CARGO_MANIFEST_DIR")).args(["run", "--release", "--quiet", "--"]);
     let output = program.args(command.split_whitespace()).arg("--out").arg(&out).output()?;
