@@ -30,7 +30,7 @@ use crate::scene::Model;
 ///
 /// # Panics
 ///
-/// If `k` is 0, and where [`settle`](super::settle) does.
+/// If `k` is 0, and where [`settle`](super::settle()) does.
 pub fn settle_strided(model: &Model, mut trace: Trace, k: usize) -> SettledTrace {
     assert!(k > 0, "a stride is at least 1");
     let thinned = thin(model, &mut trace, k);
