@@ -19,7 +19,7 @@ use crate::scene::Model;
 /// use tautline::trace::{Trace, settle_strided};
 ///
 /// // Over the end of a wall, whose lower part is in the way of a longer step.
-/// let model = Model::new(Scene::new([[[2.5, -9.0].into(), [2.5, 1.0].into()]])?, Some([0.0, 0.0].into()))?;
+/// let model = Model::new(Scene::new([[[2.5, -9.0].into(), [2.5, 1.6].into()]])?, Some([0.0, 0.0].into()))?;
 /// let points = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 2.0], [4.0, 0.0], [5.0, 0.0]].map(Into::into).to_vec();
 /// let settled = settle_strided(&model, Trace { id: 0, points }, 2);
 /// let at: Vec<_> = settled.points().iter().map(|p| p.x).collect();
