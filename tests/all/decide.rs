@@ -126,7 +126,8 @@ fn a_shader_with_one_operator_changed_does_not_answer_like_the_twin() {
     for (right, wrong) in CHANGES {
         assert_eq!(DECIDE_WGSL.matches(right).count(), 1, "{right:?} stands in the shader once");
         let changed = DECIDE_WGSL.replace(right, wrong);
-        assert!(twins_agree(&device, &changed, 300).is_err(), "{wrong:?} in the place of {right:?} went unnoticed");
+        // It ends with the first question that tells them apart; some changes show in one of a hundred only.
+        assert!(twins_agree(&device, &changed, 10_000).is_err(), "{wrong:?} in the place of {right:?} went unnoticed");
     }
 }
 
