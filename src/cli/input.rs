@@ -65,7 +65,8 @@ impl FileArgs {
     }
 }
 
-fn above_zero(text: &str) -> Result<f64, String> {
+/// A number above 0.
+pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|&x: &f64| x > 0.0 && x.is_finite());
     number.ok_or_else(|| "give a number above 0, such as 0.01".to_owned())
 }

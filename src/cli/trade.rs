@@ -9,6 +9,7 @@ use tautline::simplify::simplify;
 use tautline::study::Traded;
 
 use super::failure::Failure;
+use super::input::above_zero;
 use super::summary::grouped;
 
 /// What accuracy is given for speed.
@@ -18,7 +19,7 @@ pub(crate) struct TradeArgs {
     #[arg(long, value_name = "K", value_parser = stride)]
     pub stride: Option<u32>,
     /// Leave wall ends out where walls move by at most TOL, in the scene's unit, and no way between them changes
-    #[arg(long, value_name = "TOL", value_parser = tolerance)]
+    #[arg(long, value_name = "TOL", value_parser = above_zero)]
     pub simplify: Option<f64>,
 }
 
@@ -73,12 +74,6 @@ impl TradeArgs {
 pub(crate) fn stride(text: &str) -> Result<u32, String> {
     let number = text.trim().parse().ok().filter(|k| (1..=1 << 30).contains(k));
     number.ok_or_else(|| "give a whole number from 1 on, such as 4".to_owned())
-}
-
-/// A tolerance: how far walls may move.
-pub(crate) fn tolerance(text: &str) -> Result<f64, String> {
-    let number = text.trim().parse().ok().filter(|&x: &f64| x > 0.0 && x.is_finite());
-    number.ok_or_else(|| "give a number above 0, such as 0.5".to_owned())
 }
 
 /// What was traded and what that came to, in a line.

@@ -20,9 +20,10 @@ use tautline::trace::{Trace, read_traces};
 
 use super::bench::{length, open_device};
 use super::failure::Failure;
+use super::input::above_zero;
 use super::look::write_whole;
 use super::progress::runs;
-use super::trade::{stride, tolerance};
+use super::trade::stride;
 use super::{interrupt, named_scene, print, print_json};
 
 /// The seed of built-in walks and scenes unless told otherwise.
@@ -61,7 +62,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "K", value_delimiter = ',', value_parser = stride)]
     stride: Option<Vec<u32>>,
     /// Simplify walls by at most TOL; several with commas between them [default: half, 2 and 8 steps]
-    #[arg(long, value_name = "TOL", value_delimiter = ',', value_parser = tolerance)]
+    #[arg(long, value_name = "TOL", value_delimiter = ',', value_parser = above_zero)]
     simplify: Option<Vec<f64>>,
     /// Only this engine's methods; may be given several times
     #[arg(long, value_name = "ENGINE", value_parser = ["gpu", "cpu", "funnel", "note", "reference"])]

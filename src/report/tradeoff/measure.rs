@@ -10,7 +10,7 @@ use super::{TradeoffError, Wanted};
 use crate::engine::{EngineError, Job};
 use crate::report::Spread;
 use crate::report::bench::{Gear, Plan, order};
-use crate::rope::{Status, TraceRecord};
+use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
 
 /// How many traces engines that evaluate many at once are first given, to see how long they take.
@@ -127,7 +127,6 @@ struct Lane<'v> {
     times: usize,
     ns: Vec<f64>,
     score: Option<Score>,
-    crossing_traces: usize,
 }
 
 /// Runs the wanted methods at the wanted settings on `work`. Calls `watch` before every run.
@@ -181,7 +180,7 @@ pub fn tradeoff(
         scene: work.scene.clone(),
         n: work.model.vertices().len(),
         traces: exact.traces.len(),
-        steps: exact.steps.iter().sum(),
+        steps: steps(&exact.traces),
         vouched: truth.vouched,
         points,
         failed,
@@ -204,6 +203,11 @@ fn variants(work: &Work, settings: &[Setting], failed: &mut Vec<Failed>) -> Resu
     Ok(variants)
 }
 
+/// How many steps traces have, those that were left out counted in.
+fn steps(traces: &[SettledTrace]) -> u64 {
+    traces.iter().map(|trace| trace.steps() as u64).sum()
+}
+
 /// One run: how long it took, and what came out.
 struct Run {
     took: Duration,
@@ -214,7 +218,7 @@ impl<'v> Lane<'v> {
     fn new(method: Method, variant: &'v Variant) -> Self {
         let first = if method.takes_many() { FIRST } else { 1 };
         let traces = first.min(variant.traces.len());
-        Lane { method, variant, traces, times: 1, ns: Vec::new(), score: None, crossing_traces: 0 }
+        Lane { method, variant, traces, times: 1, ns: Vec::new(), score: None }
     }
 
     fn failed(&self, why: String) -> Failed {
@@ -241,7 +245,7 @@ impl<'v> Lane<'v> {
 
     /// Evaluates the sample once, on an engine that is made and warmed up before the clock starts.
     fn run(&self, gear: &Gear) -> Result<Option<Run>, EngineError> {
-        let traces = &self.variant.traces[..self.traces];
+        let traces = self.sample();
         let Some(mut engine) = self.method.open(&self.variant.model, gear)? else { return Ok(None) };
         if self.method.takes_many() {
             engine.evaluate(&traces[..FIRST.min(traces.len())], &Job::new())?;
@@ -267,15 +271,19 @@ impl<'v> Lane<'v> {
             if let Some(disagreement) = broken.flatten() {
                 return Err(disagreement.into());
             }
-            self.crossing_traces = records.iter().filter(|r| r.status == Status::Violation).count();
             self.score = Some(truth.score(self.variant, &records));
         }
         Ok(())
     }
 
+    /// The traces on which it runs.
+    fn sample(&self) -> &'v [SettledTrace] {
+        &self.variant.traces[..self.traces]
+    }
+
     /// How many steps its traces have before any are left out.
     fn steps(&self) -> u64 {
-        self.variant.steps[..self.traces].iter().sum()
+        steps(self.sample())
     }
 
     fn point(&self) -> Option<Point> {
@@ -288,8 +296,8 @@ impl<'v> Lane<'v> {
             traces: self.traces,
             steps: self.steps(),
             ns_per_step: Spread::of(self.ns.iter().copied())?,
-            jumps: self.variant.traces[..self.traces].iter().map(SettledTrace::jumps).sum(),
-            crossing_traces: self.crossing_traces,
+            jumps: self.sample().iter().map(SettledTrace::jumps).sum(),
+            crossing_traces: self.sample().iter().filter(|trace| trace.violation().is_some()).count(),
             event_mismatch: has_events.then_some(score.event_mismatch),
             final_mismatch: score.final_mismatch,
             length_error: LengthError { mean: score.length_error.mean, max: score.length_error.max },

@@ -51,19 +51,11 @@ pub struct Work {
     pub traces: Vec<Trace>,
 }
 
-impl Work {
-    fn steps(&self) -> Vec<u64> {
-        self.traces.iter().map(|trace| trace.points.len() as u64 - 1).collect()
-    }
-}
-
 /// The work as a setting has it.
 pub(super) struct Variant {
     pub setting: Setting,
     pub model: Arc<Model>,
     pub traces: Vec<SettledTrace>,
-    /// How many steps each trace has before any are left out.
-    pub steps: Vec<u64>,
 }
 
 impl Variant {
@@ -76,9 +68,7 @@ impl Variant {
         let traces: Vec<SettledTrace> = settled(&work.model, &work.traces, 1);
         match traces.iter().find_map(SettledTrace::violation) {
             Some(violation) => Err((*violation).into()),
-            None => {
-                Ok(Variant { setting: Setting::EXACT, model: Arc::clone(&work.model), traces, steps: work.steps() })
-            }
+            None => Ok(Variant { setting: Setting::EXACT, model: Arc::clone(&work.model), traces }),
         }
     }
 
@@ -101,7 +91,7 @@ impl Variant {
             }
         };
         let traces = settled(&model, &work.traces, setting.stride());
-        Ok(Variant { setting, model, traces, steps: work.steps() })
+        Ok(Variant { setting, model, traces })
     }
 }
 
