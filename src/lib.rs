@@ -30,6 +30,7 @@
 #![forbid(unsafe_code)]
 
 pub mod candidates;
+mod caught;
 pub mod engine;
 pub mod example;
 pub mod fast;

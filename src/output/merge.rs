@@ -11,6 +11,7 @@ use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchR
 use super::columns::ResultColumns;
 use super::tables::Table;
 use super::{WholeFile, WriteError};
+use crate::caught::caught;
 
 /// How many rows of each file are held at a time.
 const ROWS: usize = 1 << 13;
@@ -80,11 +81,14 @@ impl Source {
     fn open(path: &Path, like: &Table<ResultColumns>, rows: usize) -> Result<Option<Self>, WriteError> {
         let fault = |e: &dyn std::fmt::Display| WriteError::source(path, e);
         let file = File::open(path).map_err(|e| fault(&e))?;
-        let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| fault(&e))?;
-        if !like.has_columns(builder.schema()) {
-            return Err(fault(&"its columns are not those of results"));
-        }
-        let batches = builder.with_batch_size(rows).build().map_err(|e| fault(&e))?;
+        let open = || {
+            let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| fault(&e))?;
+            if !like.has_columns(builder.schema()) {
+                return Err(fault(&"its columns are not those of results"));
+            }
+            builder.with_batch_size(rows).build().map_err(|e| fault(&e))
+        };
+        let batches = caught(open).unwrap_or_else(|panic| Err(fault(&panic)))?;
         let rows = RecordBatch::new_empty(like.schema());
         let mut source = Source { path: path.to_owned(), batches, rows, at: 0 };
         Ok(source.refill()?.then_some(source))
@@ -99,9 +103,10 @@ impl Source {
     fn refill(&mut self) -> Result<bool, WriteError> {
         while self.at == self.rows.num_rows() {
             let last = self.at.checked_sub(1).map(|last| traces(&self.rows)[last]);
-            match self.batches.next() {
+            let fault = |e: &dyn std::fmt::Display| WriteError::source(&self.path, e);
+            match caught(|| self.batches.next()).map_err(|panic| fault(&panic))? {
                 None => return Ok(false),
-                Some(rows) => self.rows = rows.map_err(|e| WriteError::source(&self.path, e))?,
+                Some(rows) => self.rows = rows.map_err(|e| fault(&e))?,
             }
             self.at = 0;
             let sorted = last.iter().chain(traces(&self.rows)).is_sorted_by(|a, b| a < b);
@@ -187,5 +192,24 @@ mod tests {
         assert!(fails(&at("turned.parquet")).ends_with("its rows are not in the order of their traces"));
         crate::output::write_events(&at("events.parquet"), &[], &[]).unwrap();
         assert!(fails(&at("events.parquet")).ends_with("its columns are not those of results"));
+    }
+
+    #[test]
+    fn no_changed_byte_makes_a_panic() {
+        let folder = tempfile::tempdir().unwrap();
+        let [from, to] = ["from.parquet", "to.parquet"].map(|name| folder.path().join(name));
+        let good = std::fs::read(written(&from, 0..9)).unwrap();
+        let mut errors = 0;
+        for i in 0..good.len() {
+            for change in [0x01, 0x10, 0x80, 0xff] {
+                let mut bad = good.clone();
+                bad[i] ^= change;
+                std::fs::write(&from, bad).unwrap();
+                // One row more than there are: what is taken is not written out.
+                let error = merge_results(std::slice::from_ref(&from), &to, &[], 10).unwrap_err().to_string();
+                errors += usize::from(error.contains("from.parquet"));
+            }
+        }
+        assert!(errors > good.len(), "{errors} of {}", 4 * good.len());
     }
 }

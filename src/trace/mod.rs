@@ -1,6 +1,5 @@
 //! What the user brings as movement: the points through which the free end is dragged.
 
-mod caught;
 mod corner;
 mod csv_file;
 mod csv_lines;

@@ -11,8 +11,8 @@ use glam::DVec2;
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
 
-use super::caught::caught;
 use super::gather::Gatherer;
+use crate::caught::caught;
 use crate::read_error::{Fault, Place};
 
 /// Rows that are decoded at a time: few enough that their memory is used again and stays in the cache.

@@ -12,7 +12,7 @@ thread_local! {
 ///
 /// Such a panic is not printed: it says nothing about this program. For that the panic hook is wrapped, once and for
 /// all; panics outside of `decode` reach the hook that was there.
-pub(super) fn caught<T>(decode: impl FnOnce() -> T) -> Result<T, String> {
+pub(crate) fn caught<T>(decode: impl FnOnce() -> T) -> Result<T, String> {
     static WRAP: Once = Once::new();
     WRAP.call_once(|| {
         let outer = take_hook();
