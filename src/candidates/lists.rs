@@ -190,6 +190,17 @@ impl<'m> Lists<'m> {
         })
     }
 
+    /// How many vertices [`remaining`](Self::remaining) has; `None` before anything was asked that takes knowing which. Makes
+    /// nothing.
+    pub fn remaining_count(&self) -> Option<usize> {
+        let all = self.model.vertices().len();
+        match (self.keep_all, self.visibility.get()) {
+            (true, _) | (_, Some(None)) => Some(all),
+            (_, Some(Some(visibility))) => Some(visibility.listed().len()),
+            (_, None) => None,
+        }
+    }
+
     /// Whether every pivot has the list of [`all`](Self::all) vertices: because that was asked for, or because the scene
     /// cannot be triangulated.
     pub fn keeps_all(&self) -> bool {

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 use tautline::example::{Walker, some_walks};
 use tautline::scene::Model;
-use tautline::trace::{SettledTrace, Trace, TraceReader, settle_strided};
+use tautline::trace::{SettledTrace, Trace, TraceReader};
 
 use super::failure::Failure;
 use super::interrupt;
@@ -117,8 +117,7 @@ fn prepare(mut source: Source, terms: &Terms, traces: usize, ready: &SyncSender<
         let start = Instant::now();
         let batch = match source.next(&terms.given, traces) {
             Ok(Some(traces)) => {
-                let settle = |trace| settle_strided(&terms.used, trace, terms.stride);
-                let settled = traces.into_par_iter().map(settle).collect();
+                let settled = traces.into_par_iter().map(|trace| terms.settle(trace)).collect();
                 Ok(Batch { settled, position: source.position(), prepared: start.elapsed() })
             }
             Ok(None) => return,

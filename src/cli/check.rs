@@ -6,6 +6,7 @@ use tautline::trace::{Violation, ViolationKind};
 use super::batches::Batches;
 use super::failure::Failure;
 use super::input::InputArgs;
+use super::summary::counted;
 use super::trade::Terms;
 use super::{interrupt, print, print_json};
 
@@ -44,15 +45,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }));
     }
     let mut text = format!(
-        "scene   {}: {} walls, {} vertices, anchor ({}, {})\n",
+        "scene   {}: {}, {}, anchor ({}, {})\n",
         args.input.name(),
-        scene.walls().len(),
-        scene.vertices().len(),
+        counted(scene.walls().len() as u64, "wall", "walls"),
+        counted(scene.vertices().len() as u64, "vertex", "vertices"),
         anchor.x,
         anchor.y
     );
     if scene.dropped() > 0 {
-        text += &format!("        {} walls of zero length were dropped\n", scene.dropped());
+        let dropped = scene.dropped() as u64;
+        text +=
+            &format!("        {} dropped\n", counted(dropped, "wall of zero length was", "walls of zero length were"));
     }
     if let Some(Counts { traces, steps, crossing, .. }) = counts {
         text += &format!("traces  {traces}, {steps} steps; {crossing} of the traces cross walls\n");

@@ -16,7 +16,7 @@ use super::input::InputArgs;
 use super::interrupt::{self, Writing};
 use super::output::Output;
 use super::progress::{Progress, with_progress};
-use super::summary::{Summary, Times};
+use super::summary::{Summary, Times, counted};
 use super::trade::TradeArgs;
 use super::{print, print_json};
 
@@ -50,7 +50,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let terms = args.trade.terms(&args.input.name(), args.input.model()?)?;
     let model = &terms.used;
     if model.scene().dropped() > 0 {
-        eprintln!("note: {} walls of zero length were dropped", model.scene().dropped());
+        let dropped = model.scene().dropped() as u64;
+        eprintln!("note: {} dropped", counted(dropped, "wall of zero length was", "walls of zero length were"));
     }
     let source = args.input.source()?;
     let (mut engine, on) = args.engine.open(model)?;
@@ -77,16 +78,12 @@ fn evaluate(
     interrupt::stops(&job);
     let mut times = Times::default();
     let mut violations = args.input.violations();
-    // Simplified walls may be in the way of traces that kept clear of them as they were: these are marked.
-    let is_strict = args.trade.simplify.is_none() || args.input.flags_violations();
     let notes = args.trade.notes(engine.precision());
     let mut output = Output::new(args.out.as_deref(), args.events.as_deref(), model, notes);
     let progress = Progress::new(batches.size());
     with_progress(&progress, &job, || {
         while let Some(Batch { settled, position, prepared }) = batches.next()? {
-            if is_strict {
-                violations.take(&settled)?;
-            }
+            violations.take(&settled)?;
             progress.begin(position, settled.iter().map(|t| t.steps() as u64).sum());
             times.prepared += prepared;
             let start = Instant::now();

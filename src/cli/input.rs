@@ -79,7 +79,7 @@ pub(crate) fn note(path: &Path, scene: &Scene) {
 }
 
 /// Two numbers with a comma between them.
-fn point(text: &str) -> Result<DVec2, String> {
+pub(super) fn point(text: &str) -> Result<DVec2, String> {
     let wrong = || "give two numbers with a comma between them, such as 1.5,-2".to_owned();
     let (x, y) = text.split_once(',').ok_or_else(wrong)?;
     let number = |t: &str| t.trim().parse::<f64>().map_err(|_| wrong());
@@ -128,11 +128,6 @@ impl InputArgs {
             (Some(_), None) => Err(Failure::input(anyhow!("--traces needs --scene: the walls that they go by"))),
             (None, Some(_)) => Err(Failure::input(anyhow!("--scene needs --traces: a .csv or .parquet of points"))),
         }
-    }
-
-    /// Whether traces that cross walls are marked and warned of.
-    pub(crate) fn flags_violations(&self) -> bool {
-        self.on_violation == OnViolation::Flag
     }
 
     /// What is to be done with traces that cross walls; none so far.

@@ -35,13 +35,3 @@ pub(super) fn open(name: &str, anchor: Option<DVec2>) -> Result<BenchScene, Fail
         }
     }
 }
-
-/// Two numbers with a comma between them.
-pub(super) fn point(text: &str) -> Result<DVec2, String> {
-    let wrong = || "give two numbers with a comma between them, such as 1.5,-2".to_owned();
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y]) => Ok(DVec2::new(x, y)),
-        _ => Err(wrong()),
-    }
-}

@@ -23,7 +23,7 @@ pub(crate) struct Output {
     out: Option<PathBuf>,
     events: Option<PathBuf>,
     model: Arc<Model>,
-    /// What is noted in a Parquet file of results.
+    /// What is noted in Parquet files.
     notes: Vec<(&'static str, String)>,
     running: Option<Running>,
 }
@@ -117,8 +117,9 @@ fn write_all(
     let mut took = Duration::ZERO;
     let mut out = out.map(ResultWriter::create).transpose()?;
     let mut events = events.map(EventWriter::create).transpose()?;
-    if let Some(out) = &mut out {
-        notes.iter().for_each(|(key, value)| out.note(key, value));
+    for (key, value) in notes {
+        out.iter_mut().for_each(|out| out.note(key, value));
+        events.iter_mut().for_each(|events| events.note(key, value));
     }
     for records in records {
         let start = Instant::now();

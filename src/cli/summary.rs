@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 use tautline::engine::{Engine, Precision};
-use tautline::rope::{EventKind, Status, TraceRecord};
+use tautline::rope::{EventKind, TraceRecord};
 use tautline::scene::Model;
 
 use tautline::study::Traded;
@@ -73,6 +73,11 @@ pub(super) fn short(x: f64) -> String {
     }
 }
 
+/// So many of what one and several are called.
+pub(super) fn counted(count: u64, one: &str, several: &str) -> String {
+    format!("{} {}", grouped(count), if count == 1 { one } else { several })
+}
+
 /// A count with commas between its thousands.
 pub(super) fn grouped(count: u64) -> String {
     let digits = count.to_string();
@@ -128,15 +133,15 @@ impl Summary {
         if let Some((_, traded)) = &mut self.traded {
             for trace in settled {
                 traded.jumps += trace.jumps() as u64;
-                traded.crossing_traces += u64::from(trace.violation().is_some());
-                traded.crossing_steps += trace.violations() as u64;
+                traded.crossing_traces += u64::from(trace.crossings() > 0);
+                traded.crossing_steps += trace.crossings() as u64;
             }
         }
+        self.violations += settled.iter().filter(|trace| trace.violation().is_some()).count() as u64;
         for record in records {
             let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count();
             self.traces += 1;
             self.steps += record.steps;
-            self.violations += u64::from(record.status == Status::Violation);
             self.wraps += wraps as u64;
             self.unwraps += (record.events.len() - wraps) as u64;
             self.length.add(record.length);
@@ -155,15 +160,15 @@ impl Summary {
         let [x, y] = self.anchor;
         let events = self.wraps + self.unwraps;
         let mut text = format!(
-            "scene    {}: {} walls with {} ends{}, anchor ({x}, {y})\n\
-             traces   {}, {} steps\n\
+            "scene    {}: {} with {} ends{}, anchor ({x}, {y})\n\
+             traces   {}, {}\n\
              engine   {} ({}) on {}\n",
             self.scene,
-            grouped(self.walls as u64),
+            counted(self.walls as u64, "wall", "walls"),
             grouped(self.vertices as u64),
             self.tried(),
             grouped(self.traces),
-            grouped(self.steps),
+            counted(self.steps, "step", "steps"),
             self.engine,
             self.precision,
             self.on,
@@ -172,9 +177,13 @@ impl Summary {
             text += &format!("traded   {}\n", words(trade.stride.unwrap_or(1), trade.simplify, traded));
         }
         if self.violations > 0 {
-            text += &format!("crossing {} traces cross walls and are marked\n", grouped(self.violations));
+            let what =
+                counted(self.violations, "trace crosses a wall and is marked", "traces cross walls and are marked");
+            text += &format!("crossing {what}\n");
         }
-        text += &format!("events   {} wraps, {} unwraps", grouped(self.wraps), grouped(self.unwraps));
+        let [wraps, unwraps] =
+            [(self.wraps, "wrap", "wraps"), (self.unwraps, "unwrap", "unwraps")].map(|(n, a, b)| counted(n, a, b));
+        text += &format!("events   {wraps}, {unwraps}");
         if self.steps > 0 {
             text += &format!(", {} a step", short(events as f64 / self.steps as f64));
         }

@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use anyhow::anyhow;
 use tautline::engine::Precision;
+use tautline::geometry::number;
 use tautline::scene::Model;
 use tautline::simplify::simplify;
 use tautline::study::Traded;
+use tautline::trace::{SettledTrace, Trace, settle_owned};
 
 use super::failure::Failure;
 use super::input::above_zero;
-use super::summary::grouped;
+use super::summary::{counted, grouped};
 
 /// What accuracy is given for speed.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -40,6 +42,13 @@ impl Terms {
         let given = Arc::new(model);
         Terms { used: given.clone(), given, stride: 1 }
     }
+
+    /// The trace among the walls as they are, then as it is to be used.
+    pub(crate) fn settle(&self, trace: Trace) -> SettledTrace {
+        let settled = settle_owned(&self.given, trace);
+        let is_traded = self.stride > 1 || !Arc::ptr_eq(&self.given, &self.used);
+        if is_traded { settled.coarsened(&self.used, self.stride) } else { settled }
+    }
 }
 
 impl TradeArgs {
@@ -50,10 +59,8 @@ impl TradeArgs {
 
     /// What results say of themselves: nothing if they are exact.
     pub(crate) fn notes(&self, precision: Option<Precision>) -> Vec<(&'static str, String)> {
-        let stride = self.stride.filter(|&k| k > 1).map(|k| ("tautline.stride", k.to_string()));
-        let simplify = self.simplify.map(|tolerance| ("tautline.simplify", tolerance.to_string()));
         let fast = precision.filter(|&p| p == Precision::Fast).map(|p| ("tautline.precision", p.name().to_owned()));
-        [stride, simplify, fast].into_iter().flatten().collect()
+        notes(self.stride.unwrap_or(1), self.simplify).into_iter().chain(fast).collect()
     }
 
     /// What is left of the scene called `name`, and of traces in it.
@@ -70,26 +77,34 @@ impl TradeArgs {
     }
 }
 
+/// What rows say of how their ropes were traded: nothing if they were not.
+pub(crate) fn notes(stride: u32, simplify: Option<f64>) -> Vec<(&'static str, String)> {
+    let stride = (stride > 1).then(|| ("tautline.stride", stride.to_string()));
+    let simplify = simplify.map(|tolerance| ("tautline.simplify", number(tolerance)));
+    stride.into_iter().chain(simplify).collect()
+}
+
 /// A stride: of so many points one is used.
 pub(crate) fn stride(text: &str) -> Result<u32, String> {
-    let number = text.trim().parse().ok().filter(|k| (1..=1 << 30).contains(k));
-    number.ok_or_else(|| "give a whole number from 1 on, such as 4".to_owned())
+    let number = text.trim().parse().ok().filter(|&k| k > 0);
+    number.ok_or_else(|| format!("give a whole number from 1 to {}, such as 4", u32::MAX))
 }
 
 /// What was traded and what that came to, in a line.
 pub(crate) fn words(stride: u32, simplify: Option<f64>, traded: &Traded) -> String {
     let mut words = Vec::new();
     if stride > 1 {
-        let jumps = grouped(traded.jumps);
-        words.push(format!(
-            "of every {stride} points one ({jumps} longer steps would touch a wall and are walked as given)"
-        ));
+        let one = "longer step would touch a wall and is walked as given";
+        let jumps = counted(traded.jumps, one, "longer steps would touch a wall and are walked as given");
+        words.push(format!("of every {stride} points one ({jumps})"));
     }
     if let Some(tolerance) = simplify {
         let [before, left] = [traded.vertices, traded.vertices_left].map(grouped);
-        let [traces, steps] = [traded.crossing_traces, traded.crossing_steps].map(grouped);
+        let traces = counted(traded.crossing_traces, "trace crosses", "traces cross");
+        let steps = counted(traded.crossing_steps, "step", "steps");
         words.push(format!(
-            "walls simplified by at most {tolerance}, {left} of {before} wall ends left ({traces} traces cross one, in {steps} steps)"
+            "walls simplified by at most {}, {left} of {before} wall ends left ({traces} one, in {steps})",
+            number(tolerance)
         ));
     }
     words.join("; ")

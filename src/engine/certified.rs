@@ -34,7 +34,7 @@ impl Player for Course {
         let query = job.time(Phase::Queries, || {
             Course::ask(self, lists.frame(), trace, shared.window, shared.simd, &mut tools.slopes)
         });
-        if trace.violation().is_some() {
+        if trace.breaks_rules() {
             // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
             let before = Course::at(self);
             self.try_all(model, trace);

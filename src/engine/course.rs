@@ -8,7 +8,7 @@ use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 /// How many legs the first window of a trace covers at most, and the first after an event.
-pub(super) const FIRST_WINDOW: usize = 16;
+pub(crate) const FIRST_WINDOW: usize = 16;
 
 /// How far a trace has come, and the window that was asked for last.
 pub(super) struct Course {

@@ -86,7 +86,7 @@ impl Engine for Cpu<'_> {
     }
 
     fn remaining(&self) -> Option<usize> {
-        Some(self.lists.remaining().len())
+        self.lists.remaining_count()
     }
 
     fn forget(&mut self) {
@@ -127,7 +127,7 @@ impl Lane<'_, '_> {
             }
             let query =
                 job.time(Phase::Queries, || self.course.ask(lists.frame(), trace, *window, *simd, &mut self.slopes));
-            if trace.violation().is_some() {
+            if trace.breaks_rules() {
                 // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
                 let before = self.course.at();
                 self.course.try_all(model, trace);

@@ -82,7 +82,7 @@ impl Engine for FastGpu<'_> {
     }
 
     fn remaining(&self) -> Option<usize> {
-        Some(self.lists.remaining().len())
+        self.lists.remaining_count()
     }
 
     fn forget(&mut self) {

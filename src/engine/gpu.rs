@@ -88,7 +88,7 @@ impl Engine for Gpu<'_> {
     }
 
     fn remaining(&self) -> Option<usize> {
-        Some(self.lists.remaining().len())
+        self.lists.remaining_count()
     }
 
     fn forget(&mut self) {

@@ -75,9 +75,9 @@ impl Player for Hasty {
         let number = contact.map_or(model.vertices().len() as u32, |c| c.vertex);
         // Where a trace crosses walls, the rope can meet anything. Elsewhere lists are made at once, since all answers have
         // to come from the device.
-        let list = shared.job.time(Phase::Queries, || match trace.violation() {
-            Some(_) => Some(Arc::clone(lists.all())),
-            None => lists.of(number, f64::INFINITY),
+        let list = shared.job.time(Phase::Queries, || match trace.breaks_rules() {
+            true => Some(Arc::clone(lists.all())),
+            false => lists.of(number, f64::INFINITY),
         })?;
         let key = lists.key(number, &list);
         let query = shared.job.time(Phase::Queries, || {

@@ -22,6 +22,7 @@ use crate::gpu::GpuError;
 use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
 
+pub(crate) use course::FIRST_WINDOW;
 pub use cpu::Cpu;
 pub use fast_gpu::FastGpu;
 pub use funnel::Funnel;
@@ -65,7 +66,7 @@ pub trait Engine {
     }
 
     /// How many of the model's vertices it tries, that is, at how many a rope can turn within reach of the traces evaluated so
-    /// far; all with `keep_all`. `None` for engines that do not ask. See
+    /// far; all with `keep_all`. `None` for engines that do not ask, or have not yet. See
     /// [`Visibility::only_required`](crate::visibility::Visibility::only_required).
     fn remaining(&self) -> Option<usize> {
         None

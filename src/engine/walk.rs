@@ -68,7 +68,7 @@ impl Walk {
             // A leg wraps no vertex twice. Only where a trace goes through walls can a rope turn more than half way round
             // a wall's end, and then the update may find no end.
             0 => {
-                assert!(trace.violation().is_some(), "a leg that keeps to the rules wraps no vertex twice");
+                assert!(trace.breaks_rules(), "a leg that keeps to the rules wraps no vertex twice");
                 None
             }
             _ => self.sweep.next(&mut self.rope, &leg, model.vertices(), candidates),
@@ -141,7 +141,7 @@ impl Walk {
         let taut = self.rope.taut(a);
         TraceRecord {
             trace: trace.id(),
-            status: if trace.violation().is_some() { Status::Violation } else { Status::Ok },
+            status: if trace.breaks_rules() { Status::Violation } else { Status::Ok },
             steps: trace.steps() as u64,
             length: self.rope.length(a),
             max_length: self.max_length,

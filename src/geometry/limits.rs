@@ -80,9 +80,19 @@ pub(crate) struct Shown(pub DVec2);
 
 impl std::fmt::Display for Shown {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let show = |c: f64| if c == 0.0 || (1e-5..1e16).contains(&c.abs()) { c.to_string() } else { format!("{c:e}") };
-        write!(f, "({}, {})", show(self.0.x), show(self.0.y))
+        write!(f, "({}, {})", number(self.0.x), number(self.0.y))
     }
+}
+
+/// A number as messages show it: the fewest digits that name it, with an exponent where plain ones would be many.
+///
+/// ```
+/// use tautline::geometry::number;
+///
+/// assert_eq!([0.4, 2.0, 1e-300].map(number), ["0.4", "2", "1e-300"]);
+/// ```
+pub fn number(x: f64) -> String {
+    if x == 0.0 || (1e-5..1e16).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! What a device makes of f32, found out by asking it: the candidate pass relies on some of it.
 
+use std::cmp::Ordering;
 use std::sync::mpsc;
 
 use bytemuck::{Pod, Zeroable};
@@ -138,10 +139,15 @@ fn is_subnormal(exact: f64) -> bool {
     exact != 0.0 && exact.abs() < NORMAL
 }
 
-/// Whether `result` is one of the two f32 nearest to `exact`, or 0 for a subnormal one.
+/// Whether `result` is one of the two f32 between which `exact` lies, or it itself if it is one; or 0 for a subnormal one.
 fn is_near(result: f32, exact: f64) -> bool {
-    let error = (f64::from(result) - exact).abs();
-    error <= exact.abs() * f64::from(f32::EPSILON) || (exact.abs() < NORMAL && error <= NORMAL)
+    let nearest = exact as f32;
+    let next = match f64::from(nearest).partial_cmp(&exact) {
+        Some(Ordering::Less) => nearest.next_up(),
+        Some(Ordering::Greater) => nearest.next_down(),
+        _ => nearest,
+    };
+    result == nearest || result == next || (exact.abs() < NORMAL && result == 0.0)
 }
 
 /// Normals that are close to 0 or subnormal themselves, and 0 from either side.

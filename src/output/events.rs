@@ -64,6 +64,12 @@ impl EventWriter {
         )
     }
 
+    /// Notes something about the events, where they come from say, in the metadata of a Parquet file; the other formats have
+    /// no place for it.
+    pub fn note(&mut self, key: &str, value: &str) {
+        self.0.note(key, value);
+    }
+
     /// Puts the file in its place.
     ///
     /// # Errors

@@ -53,9 +53,7 @@ impl ResultWriter {
     /// Notes something about the results, where they come from say, in the metadata of a Parquet file; the other formats have
     /// no place for it.
     pub fn note(&mut self, key: &str, value: &str) {
-        if let Rows::Parquet(table) = &mut self.0 {
-            table.note(key, value);
-        }
+        self.0.note(key, value);
     }
 
     /// Puts the file in its place.

@@ -33,6 +33,13 @@ impl<C: Columns> Rows<C> {
         })
     }
 
+    /// Notes something in the metadata of a Parquet file.
+    pub(super) fn note(&mut self, key: &str, value: &str) {
+        if let Rows::Parquet(table) = self {
+            table.note(key, value);
+        }
+    }
+
     /// Writes all `items`, which are independent of each other: `text` writes one as lines, `push` adds it to the columns.
     /// Lines are made in parallel and written in order; all of their text is held in memory.
     pub(super) fn write_all<T: Sync>(

@@ -4,6 +4,7 @@ use super::colour::{BLUE, GRID, INK, MUTED, VERMILION};
 use super::label::width;
 use super::svg::{Align, Svg};
 use super::ticks::Ticks;
+use crate::geometry::number;
 use crate::report::tradeoff::{Method, Point, Setting, Tradeoff};
 
 /// How wide the whole is, and what stands above the panels.
@@ -15,6 +16,9 @@ const PANEL: f64 = 370.0;
 
 /// How wide the strip is in which points stand whose error is 0: a logarithm has no place for them.
 const STRIP: f64 = 64.0;
+
+/// What lies behind errors that are less than the sample leaves open.
+const GREEN: &str = "#e8f1e4";
 
 /// The colours of methods, in their order, of the eight of M. Okabe and K. Ito (see `colour.rs`) but the yellow, which is
 /// too light for white paper.
@@ -187,15 +191,25 @@ impl<'a> Panel<'a> {
                 }
             }
         }
-        for point in self.points.iter().filter(|p| p.pareto) {
+        let places: Vec<[f64; 2]> = self.points.iter().filter_map(|p| self.place(p)).collect();
+        let mut names: Vec<[f64; 2]> = Vec::new();
+        // From the far end, so that of points at one place the one that gives most away keeps its name.
+        for point in self.points.iter().rev().filter(|p| p.pareto) {
             let Some([x, y]) = self.place(point) else { continue };
             ring(svg, [x, y]);
             let name = match point.setting {
                 Setting::Stride(1) => continue,
                 Setting::Stride(k) => k.to_string(),
-                Setting::Simplify(tolerance) => tolerance.to_string(),
+                Setting::Simplify(tolerance) => number(tolerance),
             };
-            svg.text([x + 11.0, y + 4.0], Align::Start, &format!("font-size=\"10\" fill=\"{MUTED}\""), &name);
+            let style = format!("font-size=\"10\" fill=\"{MUTED}\"");
+            let wide = width(&name, 10.0);
+            let middle = [x + 11.0 + wide / 2.0, y];
+            let touches = |at: &[f64; 2]| (at[0] - middle[0]).abs() < wide / 2.0 + 6.0 && (at[1] - y).abs() < 10.0;
+            if !places.iter().chain(&names).any(touches) {
+                svg.text([x + 11.0, y + 4.0], Align::Start, &style, &name);
+                names.push(middle);
+            }
         }
     }
 
@@ -205,11 +219,10 @@ impl<'a> Panel<'a> {
         let grid = format!("stroke=\"{GRID}\"");
         svg.rect([self.left, top], [STRIP, bottom - top], "fill=\"#f4f4f4\"");
         svg.text([self.left + STRIP / 2.0, bottom + 18.0], Align::Middle, "font-size=\"11\"", self.measure.none);
-        if let Some(noise) = self.measure.noise.filter(|noise| noise.is_finite()) {
-            let to = self.x.at(noise);
-            svg.rect([self.x.from, top], [to - self.x.from, bottom - top], "fill=\"#e8f1e4\"");
-            let style = format!("font-size=\"11\" fill=\"{MUTED}\"");
-            svg.text([self.x.from + 6.0, top + 14.0], Align::Start, &style, "green: less than the sample leaves open");
+        let noise = self.measure.noise.filter(|noise| noise.is_finite());
+        if let Some(noise) = noise {
+            let wide = self.x.at(noise) - self.x.from;
+            svg.rect([self.x.from, top], [wide, bottom - top], &format!("fill=\"{GREEN}\""));
         }
         for (value, name) in &self.y.ticks().marks {
             let y = self.y.at(*value);
@@ -220,6 +233,13 @@ impl<'a> Panel<'a> {
             let x = self.x.at(*value);
             svg.line([x, top], [x, bottom], &grid);
             svg.text([x, bottom + 18.0], Align::Middle, "", name);
+        }
+        if noise.is_some() {
+            // Over the grid, which it hides.
+            let style = format!(
+                "font-size=\"11\" fill=\"{MUTED}\" stroke=\"{GREEN}\" stroke-width=\"4\" paint-order=\"stroke\""
+            );
+            svg.text([self.x.from + 6.0, top + 14.0], Align::Start, &style, "green: less than the sample leaves open");
         }
         svg.line([self.left, bottom], [right, bottom], &format!("stroke=\"{INK}\""));
         svg.text([(self.left + right) / 2.0, bottom + 40.0], Align::Middle, "font-size=\"13\"", self.measure.title);

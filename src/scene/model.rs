@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::ops::ControlFlow::{Break, Continue};
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -34,8 +35,13 @@ pub enum AnchorError {
 
 /// A scene, its anchor, and the index of its walls.
 pub struct Model {
-    scene: Scene,
+    walls: Arc<Walls>,
     anchor: DVec2,
+}
+
+/// What models with other anchors have in common.
+struct Walls {
+    scene: Scene,
     index: WallIndex,
     /// Vertex numbers by the bits of their coordinates.
     numbers: HashMap<[u64; 2], u32>,
@@ -48,23 +54,32 @@ impl Model {
     ///
     /// A missing anchor, one that exact arithmetic cannot take, or one inside a wall.
     pub fn new(scene: Scene, anchor: Option<DVec2>) -> Result<Self, AnchorError> {
-        let anchor = check_point(anchor.or(scene.anchor()).ok_or(AnchorError::Missing)?)?;
+        let anchor = anchor.or(scene.anchor()).ok_or(AnchorError::Missing)?;
         let index = WallIndex::new(&scene);
         let numbers = scene.vertices().iter().zip(0..).map(|(p, v)| (p.to_array().map(f64::to_bits), v)).collect();
+        Model { walls: Arc::new(Walls { scene, index, numbers }), anchor }.tied(anchor)
+    }
+
+    /// The same with the rope tied at `anchor`; scene and index are shared. O(log walls + walls near it).
+    ///
+    /// # Errors
+    ///
+    /// An anchor that exact arithmetic cannot take, or one inside a wall.
+    pub fn tied(&self, anchor: DVec2) -> Result<Self, AnchorError> {
+        let anchor = check_point(anchor)?;
         let inside = |&wall: &u32| {
-            let [u, v] = scene.ends(wall as usize);
+            let [u, v] = self.scene().ends(wall as usize);
             orient(u, v, anchor) == 0.0 && between(u, v, anchor)
         };
-        if let Some(wall) = index.near(anchor, anchor).filter(inside).min() {
-            let (wall, ends) = (wall as usize, scene.ends(wall as usize));
-            return Err(AnchorError::InsideWall { anchor, wall, ends });
+        match self.index().near(anchor, anchor).filter(inside).min().map(|wall| wall as usize) {
+            Some(wall) => Err(AnchorError::InsideWall { anchor, wall, ends: self.scene().ends(wall) }),
+            None => Ok(Model { walls: Arc::clone(&self.walls), anchor }),
         }
-        Ok(Model { scene, anchor, index, numbers })
     }
 
     /// The walls and their ends.
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        &self.walls.scene
     }
 
     /// The fixed end `B` of every rope.
@@ -74,12 +89,12 @@ impl Model {
 
     /// The walls by place.
     pub fn index(&self) -> &WallIndex {
-        &self.index
+        &self.walls.index
     }
 
     /// The vertices, that is [`Scene::vertices`].
     pub fn vertices(&self) -> &[DVec2] {
-        self.scene.vertices()
+        self.scene().vertices()
     }
 
     /// Whether the segment from `a` to `b` touches no wall at all, its ends included: [`touched`](Self::touched) finds none.
@@ -100,7 +115,7 @@ impl Model {
             !same_side(orient(u, v, a), orient(u, v, b)) && !same_side(orient(a, b, u), orient(a, b, v))
         };
         let visit = |wall, [u, v]: [DVec2; 2]| if touches(u, v) { Break(wall) } else { Continue(()) };
-        self.index.visit(lower(a, b), higher(a, b), visit).break_value()
+        self.index().visit(lower(a, b), higher(a, b), visit).break_value()
     }
 
     /// The lowest and highest x and y of all vertices and the anchor.
@@ -112,6 +127,6 @@ impl Model {
     /// The vertex that stands exactly at `p`, if there is one.
     pub fn vertex_at(&self, p: DVec2) -> Option<u32> {
         // Adding zero turns a negative zero into the positive one that is in the map.
-        self.numbers.get(&(p + DVec2::ZERO).to_array().map(f64::to_bits)).copied()
+        self.walls.numbers.get(&(p + DVec2::ZERO).to_array().map(f64::to_bits)).copied()
     }
 }

@@ -51,7 +51,8 @@ pub enum SimplifyError {
 /// goes first, of several the one that stands for the fewest others, of those the one with the smallest number. The same input
 /// gives the same scene.
 ///
-/// O(n log n) for scenes whose walls are short compared with the scene and stand for few vertices each.
+/// O(n log n) for scenes whose walls are short compared with the scene and stand for few vertices each; O(n^2) at worst, as where
+/// many walls meet at one end or each vertex that goes leaves one that costs more.
 ///
 /// ```
 /// use tautline::scene::Scene;
@@ -80,6 +81,7 @@ pub fn simplify(scene: &Scene, anchors: &[DVec2], tolerance: f64) -> Result<Scen
         return Err(SimplifyError::Tolerance(tolerance));
     }
     let model = Model::new(scene.clone(), Some(anchors[0]))?;
+    anchors.iter().try_for_each(|&anchor| model.tied(anchor).map(drop))?;
     let visibility = Visibility::new(&model).ok_or(SimplifyError::Span)?;
     let mut thinning = Thinning::new(&model, &visibility, anchors, tolerance);
     thinning.run();

@@ -13,21 +13,21 @@ use super::random::{Purpose, Random};
 use super::tally::Setting;
 use super::walk::Walks;
 use crate::example::BuiltIn;
-use crate::scene::{Model, Scene, read_scene};
+use crate::scene::{AnchorError, Model, Scene, read_scene};
 use crate::simplify::simplify;
-use crate::trace::{SettledTrace, Trace, TraceReader, settle_strided};
+use crate::trace::{SettledTrace, Trace, TraceReader, settle_owned};
 
 /// A study that can be run.
 pub struct Study {
     plan: Plan,
     pub(super) setting: Setting,
+    /// The scene as it is with each of its anchors.
+    given_models: Vec<Arc<Model>>,
     /// For each anchor; none if the traces are given.
     walks: Vec<Walks>,
     /// The file of given traces.
     given: Option<PathBuf>,
     identity: String,
-    /// How many wall ends there are before any are left out.
-    pub(super) vertices: usize,
 }
 
 impl Study {
@@ -60,8 +60,7 @@ impl Study {
         let identity = identity(&plan, &models, given.as_deref())?;
         let bounds = models.iter().map(|m| m.bounds()).reduce(|(l, h), (low, high)| (l.min(low), h.max(high)));
         let bounds = bounds.expect("a study has an anchor");
-        let vertices = models[0].vertices().len();
-        let setting = Setting::new(&plan, simplified(&plan, models)?, bounds);
+        let setting = Setting::new(&plan, simplified(&plan, &models)?, bounds);
         let least = setting.unit;
         if setting.bin < least {
             return Err(PlanError::new(format!(
@@ -69,7 +68,7 @@ impl Study {
                 setting.bin
             )));
         }
-        Ok(Study { plan, setting, walks, given, identity, vertices })
+        Ok(Study { plan, setting, given_models: models, walks, given, identity })
     }
 
     /// The plan.
@@ -122,13 +121,24 @@ impl Study {
 
     /// A trace that is drawn.
     fn drawn(&self, number: u64) -> SettledTrace {
-        let walks = &self.walks[self.setting.anchor(number)];
-        if self.plan.run.is_traded() { self.settled(walks.walk(number)) } else { walks.trace(number) }
+        self.traded(self.walks[self.setting.anchor(number)].trace(number))
+    }
+
+    /// A trace of the file.
+    fn settled(&self, trace: Trace) -> SettledTrace {
+        let model = &self.given_models[self.setting.anchor(trace.id)];
+        self.traded(settle_owned(model, trace))
     }
 
     /// A trace as ropes see it.
-    fn settled(&self, trace: Trace) -> SettledTrace {
-        settle_strided(self.model(trace.id), trace, self.plan.run.stride as usize)
+    fn traded(&self, trace: SettledTrace) -> SettledTrace {
+        let (run, model) = (&self.plan.run, self.model(trace.id()));
+        if run.is_traded() { trace.coarsened(model, run.stride as usize) } else { trace }
+    }
+
+    /// How many wall ends there are before any are left out.
+    pub(super) fn vertices(&self) -> usize {
+        self.given_models[0].vertices().len()
     }
 
     /// From where to take traces, from that of number `first` on.
@@ -180,9 +190,7 @@ impl Source<'_> {
             };
             settled.par_extend(more.into_par_iter().map(|trace| self.study.settled(trace)));
         }
-        // Simplified walls may be in the way of a trace that kept clear of them as they were.
-        let is_strict = self.study.plan.run.simplify.is_none();
-        match settled.iter().find_map(|t| t.violation()).filter(|_| is_strict) {
+        match settled.iter().find_map(|t| t.violation()) {
             Some(violation) => Err(PlanError::new(violation.to_string())),
             None => Ok(settled),
         }
@@ -203,31 +211,35 @@ fn skip(reader: &mut TraceReader, count: u64) -> Result<u64, PlanError> {
 }
 
 /// The same with fewer wall ends, if the plan says so.
-fn simplified(plan: &Plan, models: Vec<Arc<Model>>) -> Result<Vec<Arc<Model>>, PlanError> {
-    let Some(tolerance) = plan.run.simplify else { return Ok(models) };
+fn simplified(plan: &Plan, models: &[Arc<Model>]) -> Result<Vec<Arc<Model>>, PlanError> {
+    let Some(tolerance) = plan.run.simplify else { return Ok(models.to_vec()) };
     let wrong = |e: String| PlanError::new(format!("run.simplify: {e}"));
     let anchors: Vec<DVec2> = models.iter().map(|m| m.anchor()).collect();
     let scene = simplify(models[0].scene(), &anchors, tolerance).map_err(|e| wrong(e.to_string()))?;
-    let model = |&at| Model::new(scene.clone(), Some(at)).map(Arc::new).map_err(|e| wrong(e.to_string()));
-    anchors.iter().map(model).collect()
+    let first = Model::new(scene, Some(anchors[0])).map_err(|e| wrong(e.to_string()))?;
+    anchors.iter().map(|&at| first.tied(at).map(Arc::new).map_err(|e| wrong(e.to_string()))).collect()
 }
 
 /// The scene with each of the plan's anchors.
 fn models(plan: &Plan, scene: &Scene) -> Result<Vec<Arc<Model>>, PlanError> {
-    let model = |anchor: Option<DVec2>| {
-        Model::new(scene.clone(), anchor).map(Arc::new).map_err(|e| PlanError::new(format!("scene.anchor: {e}")))
-    };
+    let wrong = |e: AnchorError| PlanError::new(format!("scene.anchor: {e}"));
+    let model = |anchor: Option<DVec2>| Model::new(scene.clone(), anchor).map_err(wrong);
+    // All share the walls.
+    let tied = |first: &Model, at: DVec2| first.tied(at).map(Arc::new).map_err(wrong);
     match &plan.scene.anchor {
-        None => Ok(vec![model(None)?]),
-        Some(AnchorPlan::One(at)) => Ok(vec![model(Some((*at).into()))?]),
-        Some(AnchorPlan::Several(all)) => all.iter().map(|&at| model(Some(at.into()))).collect(),
+        None => Ok(vec![Arc::new(model(None)?)]),
+        Some(AnchorPlan::One(at)) => Ok(vec![Arc::new(model(Some((*at).into()))?)]),
+        Some(AnchorPlan::Several(all)) => {
+            let first = model(all.first().map(|&at| at.into()))?;
+            all.iter().map(|&at| tied(&first, at.into())).collect()
+        }
         Some(AnchorPlan::Sampled(sampled)) => {
             let whole = model(None)?;
             let free = FreeSpace::new(&whole)
                 .ok_or_else(|| PlanError::new("scene.anchor: no free space can be found to sample anchors from"))?;
             let draw = |i: u32| {
                 let mut random = Random::new(plan.run.seed, Purpose::Anchor, u64::from(i));
-                model(Some(free.draw(&mut random)))
+                tied(&whole, free.draw(&mut random))
             };
             (0..sampled.sample).map(draw).collect()
         }

@@ -167,7 +167,7 @@ pub struct RunPlan {
     pub seed: u64,
     /// What decides: exact signs, or f32 alone on a GPU, whose ropes can be wrong.
     pub precision: Precision,
-    /// Of how many points of a trace one is used, where no wall is in the way of the longer step; 1 for all. Ropes can be
+    /// Every so many points of a trace one is used, where no wall is in the way of the longer step; 1 for all. Ropes can be
     /// wrong otherwise.
     #[serde(skip_serializing_if = "is_one")]
     pub stride: u32,

@@ -33,7 +33,7 @@ impl State {
             events: counts.events,
             blocks: counts.traces.blocks,
             traded: plan.run.is_traded().then(|| Traded {
-                vertices: study.vertices as u64,
+                vertices: study.vertices() as u64,
                 vertices_left: study.models()[0].vertices().len() as u64,
                 jumps: counts.jumps,
                 crossing_traces: counts.crossing[0],

@@ -22,7 +22,7 @@ pub struct Summary {
     pub blocks: u64,
     /// Why no more blocks are.
     pub stopped: Stopped,
-    /// What was given for speed came to, if anything was; `study.run` says what.
+    /// What it came to that accuracy was given for speed, if it was; `study.run` says how.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub traded: Option<Traded>,
     /// Which shard this is, `K/N` with K from 0; `None` for the whole study.

@@ -1,5 +1,6 @@
 //! What the user brings as movement: the points through which the free end is dragged.
 
+mod coarse;
 mod corner;
 mod csv_file;
 mod csv_lines;
@@ -13,7 +14,6 @@ mod settle;
 mod settle_truth;
 mod settled;
 mod slide;
-mod stride;
 
 use glam::DVec2;
 
@@ -21,7 +21,6 @@ pub use read::{TraceReader, read_traces};
 pub(crate) use settle::{first_violation, settle_clear};
 pub use settle::{settle, settle_owned};
 pub use settled::{SettledTrace, Violation, ViolationKind, bounds};
-pub use stride::settle_strided;
 
 /// One trace: its number and its points, in the scene's frame and unit.
 ///

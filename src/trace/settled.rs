@@ -72,12 +72,6 @@ impl Broken {
         }
     }
 
-    /// Names each step `i` by `numbers[i]` instead.
-    pub(super) fn renumber(&mut self, numbers: &[u32]) {
-        self.first.iter_mut().for_each(|v| v.step = numbers[v.step] as usize);
-        self.steps.iter_mut().for_each(|step| *step = numbers[*step as usize]);
-    }
-
     pub(super) fn sort(&mut self) {
         self.steps.sort_unstable();
         self.steps.dedup();
@@ -87,7 +81,7 @@ impl Broken {
 /// A trace that is ready to be evaluated.
 ///
 /// Its points are those of the trace, with the anchor before them (unless the trace starts there) and a point added
-/// wherever a step passes through a vertex; or, if it was [thinned](super::settle_strided), some of those of the trace.
+/// wherever a step passes through a vertex; of a [coarsened](SettledTrace::coarsened) one some are left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SettledTrace {
     pub(super) id: u64,
@@ -98,16 +92,18 @@ pub struct SettledTrace {
     pub(super) hairs: Vec<(u32, Hair)>,
     pub(super) broken: Broken,
     pub(super) bounds: (DVec2, DVec2),
-    pub(super) thinned: Thinned,
+    pub(super) coarse: Coarse,
 }
 
-/// What a trace has lost.
+/// What became of a trace that was coarsened.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Thinned {
+pub(super) struct Coarse {
     /// The numbers of the steps that the trace's own points end, ascending; empty if all are there.
     pub used: Vec<u32>,
     /// How many longer steps were walked as given, since a wall is in their way.
     pub jumps: usize,
+    /// How many steps break the rules among the walls that it was coarsened among.
+    pub crossings: usize,
 }
 
 /// The lowest and the highest x and y of all points of all traces; `None` if there are no traces. O(traces).
@@ -120,7 +116,7 @@ impl SettledTrace {
     pub(super) fn new(id: u64, points: Vec<DVec2>, added: Vec<u32>, broken: Broken) -> Self {
         let first = points[0];
         let bounds = points.iter().fold((first, first), |(low, high), &p| (lower(low, p), higher(high, p)));
-        SettledTrace { id, points, added, hairs: Vec::new(), broken, bounds, thinned: Thinned::default() }
+        SettledTrace { id, points, added, hairs: Vec::new(), broken, bounds, coarse: Coarse::default() }
     }
 
     /// The trace's number.
@@ -139,7 +135,7 @@ impl SettledTrace {
     }
 
     /// Whether every point is one of the trace's own and none stands on a vertex: the trace starts at the anchor and touches
-    /// nothing. Then every point ends a step, that of its own number unless the trace is [thinned](Self::is_thinned), and none
+    /// nothing. Then every point ends a step, that of its own number unless [points were left out](Self::is_thinned), and none
     /// has a hair.
     #[inline]
     pub fn is_plain(&self) -> bool {
@@ -166,7 +162,7 @@ impl SettledTrace {
             [0] => i - usize::from(i > 0),
             ref added => i - added.partition_point(|&a| (a as usize) < i),
         };
-        match self.thinned.used.as_slice() {
+        match self.coarse.used.as_slice() {
             [] => own,
             used => used[own] as usize,
         }
@@ -184,7 +180,7 @@ impl SettledTrace {
 
     /// The number of the trace's steps: its points less one, those that were left out counted in.
     pub fn steps(&self) -> usize {
-        match self.thinned.used.last() {
+        match self.coarse.used.last() {
             Some(&last) => last as usize,
             None => (self.points.len() - self.added.len()).saturating_sub(1),
         }
@@ -192,13 +188,24 @@ impl SettledTrace {
 
     /// Whether some of the trace's points were left out.
     pub fn is_thinned(&self) -> bool {
-        !self.thinned.used.is_empty()
+        !self.coarse.used.is_empty()
     }
 
-    /// How many of the longer steps of a [thinned](super::settle_strided) trace were walked point by point, as given, since they
+    /// How many of the longer steps of a [coarsened](Self::coarsened) trace were walked point by point, as given, since they
     /// would have touched a wall.
     pub fn jumps(&self) -> usize {
-        self.thinned.jumps
+        self.coarse.jumps
+    }
+
+    /// How many of the steps of a [coarsened](Self::coarsened) trace break the small update condition among the walls that it
+    /// was coarsened among.
+    pub fn crossings(&self) -> usize {
+        self.coarse.crossings
+    }
+
+    /// Whether a step breaks the small update condition: of the trace as it was given, or as it was coarsened.
+    pub fn breaks_rules(&self) -> bool {
+        self.broken.first.is_some() || self.coarse.crossings > 0
     }
 
     /// Where the free end is after each step, step 0 being the move to the trace's first point. After steps that were left
@@ -218,7 +225,8 @@ impl SettledTrace {
         ends.into()
     }
 
-    /// The first step that breaks the small update condition, if one does.
+    /// The first step that breaks the small update condition, if one does: of the trace as it was given, among the walls as
+    /// they were.
     pub fn violation(&self) -> Option<&Violation> {
         self.broken.first.as_ref()
     }

@@ -1,5 +1,6 @@
 //! What a scene requires, against a look at every wall for every vertex, and that leaving out the rest changes no event.
 
+use std::cell::Cell;
 use std::sync::OnceLock;
 
 use glam::DVec2;
@@ -163,7 +164,7 @@ fn check(model: &Model) -> Result<usize, TestCaseError> {
 fn count(kind: Kind, cases: u32, test: impl Fn(&Model, &Trace) -> Result<usize, TestCaseError>) -> usize {
     let cases = cases * ProptestConfig::default().cases / 256;
     let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
-    let total = std::cell::Cell::new(0);
+    let total = Cell::new(0);
     let result = TestRunner::new(config).run(&recipe(kind, true), |recipe| {
         let model = recipe.model();
         let trace = recipe.trace(&model, 0);
@@ -188,7 +189,7 @@ fn what_is_kept_in_a_dense_lattice_is_what_a_look_at_every_wall_requires() {
     let wall = (0i8..7, 0i8..7, any::<bool>(), 1i8..4);
     let cases = 100 * ProptestConfig::default().cases / 256;
     let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
-    let total = std::cell::Cell::new(0);
+    let total = Cell::new(0);
     let scenes = (prop::collection::vec(wall, 10..50), any::<bool>());
     let result = TestRunner::new(config).run(&scenes, |(walls, is_tied_to_wall)| {
         let at = |x: i8, y: i8| DVec2::new(x.into(), y.into());
@@ -216,6 +217,7 @@ fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<tautline::rope::
 fn leaving_out_what_is_not_required_changes_no_event() {
     static ADAPTER: OnceLock<Device> = OnceLock::new();
     let adapter = ADAPTER.get_or_init(software);
+    let left_out = Cell::new(0);
     for kind in KINDS {
         let events = count(kind, 150, |model, trace| {
             let batch = [settle(model, trace)];
@@ -224,13 +226,16 @@ fn leaving_out_what_is_not_required_changes_no_event() {
             for lists in [lists(), lists().after(0), lists().at_most(0), lists().after(0).at_most(0)] {
                 let mut cpu = Cpu::with_lists(lists);
                 prop_assert_eq!(&run(&mut cpu, &batch), &truth);
-                prop_assert!(cpu.remaining().is_some_and(|remaining| remaining <= model.vertices().len()));
+                if let Some(remaining) = cpu.remaining() {
+                    left_out.set(left_out.get() + model.vertices().len() - remaining);
+                }
             }
             prop_assert_eq!(&run(&mut gpu_on(adapter.clone(), lists().after(0).at_most(0)), &batch), &truth);
             Ok(truth[0].events.len())
         });
         assert!(events > 100, "{kind:?}: only {events} events");
     }
+    assert!(left_out.get() > 500, "only {} left out", left_out.get());
 }
 
 /// A closed polygon with these corners.
@@ -287,6 +292,7 @@ fn what_remains_depends_on_how_far_traces_go() {
     let model = Model::new(Scene::new(posts).unwrap(), Some(DVec2::new(0.0, 0.0))).unwrap();
     let to = |x: f64| settle(&model, &Trace { id: 0, points: vec![DVec2::new(x, 0.0), DVec2::new(x, 3.0)] });
     let mut engine = Cpu::new(&model);
+    assert_eq!(engine.remaining(), None);
     run(&mut engine, &[to(2.5)]);
     assert_eq!(engine.remaining(), Some(6));
     // A good deal further than was asked for.

@@ -3,9 +3,9 @@
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use tautline::engine::{Cpu, Engine, Funnel, Job, Reference};
-use tautline::rope::TraceRecord;
-use tautline::scene::Model;
-use tautline::trace::{SettledTrace, Trace, settle, settle_strided};
+use tautline::rope::{Status, TraceRecord};
+use tautline::scene::{Model, Scene};
+use tautline::trace::{SettledTrace, Trace, settle};
 
 use crate::scenes::{KINDS, recipe};
 use crate::support::gpu;
@@ -41,9 +41,9 @@ fn all_engines_make_the_same_of_a_coarser_trace() {
             let result = TestRunner::new(config).run(&(recipe(kind, touching), 1usize..9), |(recipe, k)| {
                 let model = recipe.model();
                 let trace = recipe.trace(&model, 5);
-                let settled = settle_strided(&model, trace.clone(), k);
+                let settled = settle(&model, &trace).coarsened(&model, k);
                 let (used, jumps) = used(&model, &trace, k);
-                prop_assert!(settled.violation().is_none());
+                prop_assert!(!settled.breaks_rules());
                 prop_assert_eq!((settled.jumps(), settled.steps()), (jumps, trace.points.len() - 1));
 
                 // The same points as a trace of their own, whose steps are numbered anew.
@@ -82,7 +82,7 @@ fn the_gpu_counts_the_same_steps() {
     let model = Model::new(floor_plan(), None).unwrap();
     let traces: Vec<SettledTrace> = walks(&model, Walker { step: 0.25, steps: 103, seed: 4 }, 40)
         .into_iter()
-        .map(|trace| settle_strided(&model, trace, 4))
+        .map(|trace| settle(&model, &trace).coarsened(&model, 4))
         .collect();
     assert!(traces.iter().any(|t| t.jumps() > 0 && t.is_thinned()) && traces.iter().all(|t| t.points().len() < 100));
     let job = Job::new();
@@ -92,15 +92,56 @@ fn the_gpu_counts_the_same_steps() {
     assert_eq!(gpu(&model).evaluate(&traces, &job).unwrap(), truth);
     assert_eq!(job.steps(), 40 * 103);
     assert!(truth.iter().all(|record| record.steps == 103));
-    assert!(truth.iter().flat_map(|record| &record.events).all(|e| e.step.is_multiple_of(4) || e.step <= 103));
+    // Every fourth step, the last, and those of jumps.
+    for (record, trace) in truth.iter().zip(&traces) {
+        let steps: Vec<usize> = (0..trace.points().len()).map(|i| trace.step(i)).collect();
+        let others = steps.iter().filter(|&&step| step % 4 > 0 && step < 103).count();
+        assert!((trace.jumps()..=3 * trace.jumps()).contains(&others), "{others} of {} jumps", trace.jumps());
+        assert!(record.events.iter().all(|e| steps.contains(&(e.step as usize))));
+    }
+}
+
+/// Walls from point to point, and the anchor at the origin.
+fn model(walls: &[[[f64; 2]; 2]]) -> Model {
+    let walls = walls.iter().map(|wall| wall.map(Into::into));
+    Model::new(Scene::new(walls).unwrap(), Some([0.0, 0.0].into())).unwrap()
+}
+
+fn trace(points: &[[f64; 2]]) -> Trace {
+    Trace { id: 1, points: points.iter().map(|&p| p.into()).collect() }
 }
 
 #[test]
 fn a_violation_keeps_its_step() {
-    let wall = [[[2.5, -9.0].into(), [2.5, 9.0].into()]];
-    let model = Model::new(tautline::scene::Scene::new(wall).unwrap(), Some([0.0, 0.0].into())).unwrap();
-    let points = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0].map(|x| [x, 0.0].into()).to_vec();
-    let settled = settle_strided(&model, Trace { id: 1, points: points.clone() }, 3);
-    assert_eq!(settled.violation(), settle(&model, &Trace { id: 1, points }).violation());
-    assert_eq!((settled.violation().unwrap().step, settled.jumps()), (5, 1));
+    let model = model(&[[[2.5, -9.0], [2.5, 9.0]]]);
+    let given = settle(&model, &trace(&[0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0].map(|x| [x, 0.0])));
+    let coarse = given.clone().coarsened(&model, 3);
+    assert_eq!(coarse.violation(), given.violation());
+    assert_eq!((coarse.violation().unwrap().step, coarse.jumps(), coarse.crossings()), (5, 1, 1));
+}
+
+#[test]
+fn what_breaks_the_rules_in_steps_that_are_left_out_is_no_secret() {
+    let model = model(&[[[1.0, -1.0], [1.0, 1.0]]]);
+    // Through the wall and back: straight from the first point to the last, it is not met.
+    let given = settle(&model, &trace(&[[0.0, 0.0], [2.0, 0.0], [0.5, 0.5]]));
+    let coarse = given.clone().coarsened(&model, 2);
+    assert_eq!(coarse.points(), [[0.0, 0.0].into(), [0.5, 0.5].into()]);
+    assert_eq!((coarse.violation(), coarse.violations()), (given.violation(), 2));
+    assert_eq!((coarse.crossings(), coarse.jumps(), coarse.breaks_rules()), (0, 0, true));
+    let record = run(&mut Cpu::new(&model), &coarse);
+    assert_eq!((record.status, record.steps, record.events.len()), (Status::Violation, 2, 0));
+}
+
+#[test]
+fn walls_that_are_simplified_away_are_still_broken_through() {
+    let bump = model(&[[[1.0, -9.0], [1.5, 0.0]], [[1.5, 0.0], [1.0, 9.0]]]);
+    let simple = model(&[[[1.0, -9.0], [1.0, 9.0]]]);
+    let [into, through] = [&[[0.0, 0.0], [1.2, 0.0]], &[[0.0, 0.0], [1.6, 0.0]]].map(|p| settle(&bump, &trace(p)));
+    // Into the bump, which was no wall, and through it, which was one.
+    assert_eq!((into.violation(), through.violations()), (None, 1));
+    let [into, through] = [into, through].map(|given| given.coarsened(&simple, 1));
+    assert_eq!((into.violation(), into.crossings(), into.breaks_rules()), (None, 1, true));
+    assert_eq!((through.violation().unwrap().ends[0].x, through.crossings()), (1.0, 1));
+    assert_eq!(run(&mut Reference::new(&simple), &into).status, Status::Violation);
 }

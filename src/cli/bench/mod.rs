@@ -14,6 +14,7 @@ use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured,
 
 use super::engine::named;
 use super::failure::Failure;
+use super::input::point;
 use super::progress::runs;
 use super::{interrupt, named_scene, print, print_json};
 
@@ -23,7 +24,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME|FILE", default_value = "random-500")]
     scene: String,
     /// Where the rope is tied in a scene file; overrides what the file says
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = named_scene::point)]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     anchor: Option<DVec2>,
     /// The length of a step, about, in the scene's unit [default: 0.01 in random-M, 0.1 in lattice-M, 0.25 in rooms, a
     /// tenth of the mean distance between walls in files]

@@ -4,7 +4,7 @@ use tautline::engine::Phase;
 use tautline::report::bench::{Plan, Row, Setting, Sweep};
 use tautline::report::{Environment, Spread};
 
-use super::super::summary::{grouped, short};
+use super::super::summary::{counted, grouped, short};
 
 /// What stands where there is no number.
 const NONE: &str = "-";
@@ -79,14 +79,14 @@ fn head(environment: &Environment, setting: &Setting, plan: &Plan) -> String {
     format!(
         "machine   {}, {} threads; {}\n\
          adapter   {adapter}\n\
-         work      {} traces of {} steps, seed {}; {} runs each, interleaved\n",
+         work      {} traces of {} steps, seed {}; {} each, interleaved\n",
         environment.processor,
         environment.threads,
         environment.os,
         grouped(setting.traces),
         grouped(setting.steps as u64),
         setting.seed,
-        plan.repeats,
+        counted(plan.repeats as u64, "run", "runs"),
     )
 }
 

@@ -11,6 +11,9 @@ use tautline::study::{Plan, State, Study};
 use super::parts::TRACES;
 use crate::cli::failure::Failure;
 
+/// What the run cost and where it ran.
+pub(super) const RUN_REPORT: &str = "run.json";
+
 /// What a folder remembers of its study: enough to go on with it.
 #[derive(Serialize, Deserialize)]
 struct Remembered {
@@ -118,6 +121,11 @@ impl Folder {
 
     pub(super) fn save(&self, state: &State) -> Result<(), WriteError> {
         state.save(&self.state_path())
+    }
+
+    /// What was said of the run before, if that can be read.
+    pub(super) fn run_report(&self) -> Option<serde_json::Value> {
+        serde_json::from_slice(&fs::read(self.path.join(RUN_REPORT)).ok()?).ok()
     }
 
     /// Writes a file of the folder, whole or not at all.

@@ -12,7 +12,7 @@ use super::folder::{BaseArgs, Folder};
 use crate::cli::failure::Failure;
 use crate::cli::look::{Look, Target, write};
 use crate::cli::print;
-use crate::cli::summary::short;
+use crate::cli::summary::{counted, short};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -78,5 +78,12 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         short(record.length),
         short(record.max_length),
         record.depth
-    ))
+    ))?;
+    match trace.crossings() {
+        0 => Ok(()),
+        steps => print(&format!(
+            "among the simplified walls it crosses some, in {}, so its rope is not free of them\n",
+            counted(steps as u64, "step", "steps")
+        )),
+    }
 }

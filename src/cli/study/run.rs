@@ -11,7 +11,7 @@ use tautline::picture;
 use tautline::report::Environment;
 use tautline::study::{EXAMPLE, Plan, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go};
 
-use super::folder::{BaseArgs, Folder};
+use super::folder::{BaseArgs, Folder, RUN_REPORT};
 use super::parts::Parts;
 use super::show;
 use crate::cli::engine::EngineArgs;
@@ -20,7 +20,7 @@ use crate::cli::input::note;
 use crate::cli::interrupt::{self, Writing};
 use crate::cli::progress::{Progress, with_progress};
 use crate::cli::summary::precision;
-use crate::cli::trade::TradeArgs;
+use crate::cli::trade::{self, TradeArgs};
 use crate::cli::{print, print_json};
 
 /// How often the state is saved.
@@ -111,11 +111,13 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let out = args.out.clone().unwrap_or_else(|| Folder::unused(&format!("{stem}-study{part}")));
     let _writing = Writing::begin();
     interrupt::check()?;
+    // An engine that is refused leaves no folder behind.
+    let engines = Engines::open(&args.engine, &study)?;
     let folder = Folder::create(&out)?;
     folder.remember(study.plan(), &base)?;
     let state = State::new(&study, args.shard);
     folder.save(&state)?;
-    proceed(&folder, &study, state, &args.engine, args.json)
+    proceed(&folder, &study, state, engines, args.json)
 }
 
 pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
@@ -130,7 +132,7 @@ pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
             begun.name()
         )));
     }
-    proceed(&folder, &study, state, &args.engine, args.json)
+    proceed(&folder, &study, state, Engines::open(&args.engine, &study)?, args.json)
 }
 
 /// Goes on until the end or Ctrl-C, and writes what there is to say.
@@ -138,12 +140,11 @@ fn proceed(
     folder: &Folder,
     study: &Study,
     mut state: State,
-    engine: &EngineArgs,
+    Engines { mut engines, on }: Engines<'_>,
     as_json: bool,
 ) -> Result<(), Failure> {
     let job = Arc::new(Job::new());
     interrupt::stops(&job);
-    let (mut engines, on) = open_engines(engine, study)?;
     let name = (engines[0].name(), precision(&*engines[0]));
     let left = state.shard().count(study.plan().blocks()).saturating_sub(state.done());
     let traces = left * u64::from(study.plan().run.block);
@@ -192,42 +193,53 @@ fn proceed(
     let done = [state.traces() - traces_before, job.steps()];
     let mut run = cost(&state, name, &on, start.elapsed(), &spent, done);
     run["scene"] = tried(study, &engines);
+    // Where nothing was left to do, what was said of the run that did it stands.
+    let before = if done[0] == 0 { folder.run_report() } else { None };
+    let run = before.unwrap_or(run);
     conclude(folder, study, &state, &run, as_json)
 }
 
 /// The engines, one for each anchor, and in words what they run on.
-///
-/// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on purpose, and
-/// `funnel` knows no contacts passed straight.
-fn open_engines<'s>(args: &EngineArgs, study: &'s Study) -> Result<(Vec<Box<dyn Engine + 's>>, String), Failure> {
-    let mut on = String::new();
-    let mut engines = Vec::new();
-    for model in study.models() {
-        let (engine, place) = args.open_for(study.plan().run.precision, model)?;
-        if ["note", "funnel"].contains(&engine.name()) {
-            return Err(Failure::input(anyhow!(
-                "--engine: {} does not count the same events as the other engines; give one of those for a study",
-                engine.name()
-            )));
+struct Engines<'s> {
+    engines: Vec<Box<dyn Engine + 's>>,
+    on: String,
+}
+
+impl<'s> Engines<'s> {
+    /// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on purpose, and
+    /// `funnel` knows no contacts passed straight.
+    fn open(args: &EngineArgs, study: &'s Study) -> Result<Self, Failure> {
+        let mut all = Engines { engines: Vec::new(), on: String::new() };
+        for model in study.models() {
+            let (engine, on) = args.open_for(study.plan().run.precision, model)?;
+            if ["note", "funnel"].contains(&engine.name()) {
+                return Err(Failure::input(anyhow!(
+                    "--engine: {} does not count the same events as the other engines; give one of those for a study",
+                    engine.name()
+                )));
+            }
+            all.engines.push(engine);
+            all.on = on;
         }
-        engines.push(engine);
-        on = place;
+        Ok(all)
     }
-    Ok((engines, on))
 }
 
 /// What each file of rows says of where it comes from.
 pub(super) fn provenance(study: &Study, (engine, precision): (&str, &str), on: &str) -> Vec<(&'static str, String)> {
     let here = Environment::here(None);
-    vec![
+    let run = &study.plan().run;
+    let mut notes = vec![
         ("tautline.version", here.version.to_owned()),
         ("tautline.commit", here.commit.to_owned()),
         ("tautline.study", study.identity().to_owned()),
-        ("tautline.seed", study.plan().run.seed.to_string()),
+        ("tautline.seed", run.seed.to_string()),
         ("tautline.engine", engine.to_owned()),
         ("tautline.precision", precision.to_owned()),
         ("tautline.on", on.to_owned()),
-    ]
+    ];
+    notes.extend(trade::notes(run.stride, run.simplify));
+    notes
 }
 
 /// What the run cost and where it ran.
@@ -271,7 +283,7 @@ pub(super) fn conclude(
     let pretty = |value: &serde_json::Value| format!("{value:#}\n");
     let answer = serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?;
     folder.write("summary.json", pretty(&answer).as_bytes())?;
-    folder.write("run.json", pretty(run).as_bytes())?;
+    folder.write(RUN_REPORT, pretty(run).as_bytes())?;
     if study.plan().outputs.pictures {
         draw(folder, &summary, study, run)?;
     }
@@ -319,7 +331,7 @@ fn is_stuck(study: &Study) -> Result<bool, Failure> {
 /// Does the first blocks, to say what all of them would cost.
 fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     let plan = study.plan();
-    let (mut engines, on) = open_engines(&args.engine, study)?;
+    let Engines { mut engines, on } = Engines::open(&args.engine, study)?;
     let (name, precision) = (engines[0].name(), precision(&*engines[0]));
     let mut state = State::new(study, args.shard);
     let clock = Instant::now();

@@ -20,7 +20,7 @@ use tautline::trace::{Trace, read_traces};
 
 use super::bench::{length, open_device};
 use super::failure::Failure;
-use super::input::above_zero;
+use super::input::{above_zero, point};
 use super::look::write_whole;
 use super::progress::runs;
 use super::trade::stride;
@@ -44,7 +44,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME|FILE", default_value = "rooms")]
     scene: String,
     /// Where the rope is tied in a scene file; overrides what the file says
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = named_scene::point)]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     anchor: Option<DVec2>,
     /// How many random walks, or a file of traces: .csv or .parquet
     #[arg(long, value_name = "N|FILE", default_value = "10000")]
@@ -73,7 +73,7 @@ pub(crate) struct Args {
     /// How often every method runs at every setting
     #[arg(long, value_name = "N", default_value = "3", value_parser = clap::value_parser!(u32).range(1..))]
     repeats: u32,
-    /// About how long one run may take, in seconds; what takes longer runs on the first traces
+    /// About how long one run may take, in seconds; what takes longer runs on the first traces, one at least
     #[arg(long, value_name = "TIME", default_value = "1", value_parser = length)]
     seconds: f64,
     /// Where to draw the diagram: .svg or .png
@@ -164,10 +164,14 @@ impl Args {
         }
         let path = Path::new(&self.traces);
         let traces = read_traces(path)?;
-        match traces.is_empty() {
-            true => Err(Failure::input(anyhow!("{}: there are no traces in it", path.display()))),
-            false => Ok(traces),
+        let shown = path.display();
+        if traces.is_empty() {
+            return Err(Failure::input(anyhow!("{shown}: there are no traces in it")));
         }
+        if traces.iter().all(|trace| trace.points.len() == 1) {
+            return Err(Failure::input(anyhow!("{shown}: no trace has a step, so there is none to be timed")));
+        }
+        Ok(traces)
     }
 
     /// Measures, with a bar on stderr.

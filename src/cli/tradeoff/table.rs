@@ -4,7 +4,7 @@ use tautline::report::Environment;
 use tautline::report::tradeoff::{Answer, Failed, Point, Tradeoff};
 
 use crate::cli::bench::table::{aligned, range};
-use crate::cli::summary::{grouped, short};
+use crate::cli::summary::{counted, grouped, short};
 
 /// What stands where there is no number.
 const NONE: &str = "-";
@@ -14,7 +14,8 @@ pub(super) fn report(environment: &Environment, repeats: u32, measured: &Tradeof
     let mut text = head(environment, repeats, measured);
     text += &aligned(3, &errors(&measured.points));
     text += "\n* no other point is faster and as right. events, ropes: traces of which they differ, in all or at the end;\n";
-    text += "none of N seen: below 3/N, with 95 % confidence. length: relative error at the end, over the traces.\n";
+    text += "none of N seen: below 3/N, with 95 % confidence. funnel knows no contacts passed straight, which are events of the rest.\n";
+    text += "length: relative error at the end, over the traces.\n";
     text += "jumps: steps that every K-th point would have taken through a wall; they are walked point by point. crossing: traces\n\
              that a simplified wall is in the way of.\n";
     text += "\nthe study's own answers: error of the method, ± what the sample leaves open (one standard error)\n\n";
@@ -33,16 +34,17 @@ fn head(environment: &Environment, repeats: u32, measured: &Tradeoff) -> String 
         "machine   {}, {} threads; {}\n\
          adapter   {adapter}\n\
          scene     {}: {} wall ends\n\
-         work      {} traces, {} steps; {repeats} runs each, interleaved; ns per step as given, of the engine alone\n\
-         truth     the exact reference: of the first {} traces by itself, of all by the engine cpu, which agrees\n\n",
+         work      {}, {}; {} each, interleaved; ns per step as given, of the engine alone\n\
+         truth     the exact reference: of the first {} by itself, of all by the engine cpu, which agrees\n\n",
         environment.processor,
         environment.threads,
         environment.os,
         measured.scene,
         grouped(measured.n as u64),
-        grouped(measured.traces as u64),
-        grouped(measured.steps),
-        grouped(measured.vouched as u64),
+        counted(measured.traces as u64, "trace", "traces"),
+        counted(measured.steps, "step", "steps"),
+        counted(repeats.into(), "run", "runs"),
+        counted(measured.vouched as u64, "trace", "traces"),
     )
 }
 
@@ -107,7 +109,12 @@ fn percent(share: f64) -> String {
 }
 
 fn share(count: usize, of: usize) -> String {
-    if count == 0 { format!("below 3/{of}") } else { percent(count as f64 / of as f64) }
+    match count {
+        // Of so few, three say nothing.
+        0 if of <= 3 => format!("0 of {of}"),
+        0 => format!("below 3/{of}"),
+        _ => percent(count as f64 / of as f64),
+    }
 }
 
 fn failures(measured: &Tradeoff) -> String {

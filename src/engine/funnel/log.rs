@@ -86,7 +86,7 @@ impl Log {
         let taut = rope.taut(a);
         TraceRecord {
             trace: trace.id(),
-            status: if trace.violation().is_some() { Status::Violation } else { Status::Ok },
+            status: if trace.breaks_rules() { Status::Violation } else { Status::Ok },
             steps: trace.steps() as u64,
             length: rope.length(a),
             max_length: self.max_length,

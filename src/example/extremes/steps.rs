@@ -101,7 +101,7 @@ pub(super) fn long_and_many() -> Vec<Extreme> {
     case_of_long.traces = long;
     let ladder: Vec<DVec2> = (0..400).map(|k| p(f64::from(k), f64::from(k % 2))).collect();
     // All along a wall of many links, standing on each joint.
-    let links = case("along 400 walls from joint to joint", along(&ladder), p(-1.0, -1.0), [ladder.repeat(1)]);
+    let links = case("along 400 walls from joint to joint", along(&ladder), p(-1.0, -1.0), [ladder.clone()]);
     vec![case_of_long, case_of_many, links]
 }
 

@@ -8,16 +8,13 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::candidates::{Frame, Lists, MARGIN, Query, Simd, Slopes, Window};
-use crate::engine::{Cpu, Engine, EngineError, Job, WINDOW};
+use crate::engine::{Cpu, Engine, EngineError, FIRST_WINDOW, Job, WINDOW};
 use crate::geometry::{higher, lower, orient};
 use crate::rope::{TraceRecord, replay};
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 pub use trial::{QUERIES, Trial};
-
-/// How many legs the first window after an event has.
-const FIRST_WINDOW: usize = 16;
 
 /// How a candidate pass did on some queries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -46,7 +43,7 @@ impl Filter {
     }
 
     /// The queries of `traces`, in windows from event to event as engines fold them, each about the vertices that the pivot
-    /// sees. The traces keep to the rules, start at the anchor and touch no wall, as those of
+    /// sees; without those that go on from the middle of a leg in which something happened. The traces keep to the rules, start at the anchor and touch no wall, as those of
     /// [`settled_walks`](crate::example::settled_walks) do. On all cores; every vertex tried is compared with every leg,
     /// exactly.
     ///

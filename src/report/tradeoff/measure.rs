@@ -29,7 +29,7 @@ const MOST_TIMES: usize = 10_000;
 pub struct Progress {
     /// Runs done.
     pub done: usize,
-    /// Runs in all.
+    /// Runs in all, as far as that is known; 0 while it is not.
     pub total: usize,
     /// What runs next; `None` while the work is being made ready.
     pub next: Option<(Method, Setting)>,
@@ -145,31 +145,35 @@ pub fn tradeoff(
     plan: &Plan,
     watch: &mut dyn FnMut(Progress),
 ) -> Result<Tradeoff, TradeoffError> {
-    let (mut done, total) = (0, wanted.methods.len() * (1 + wanted.settings.len()) * (1 + plan.repeats));
-    watch(Progress { done, total, next: None });
+    watch(Progress { done: 0, total: 0, next: None });
     let mut failed = Vec::new();
     let variants = variants(work, &wanted.settings, &mut failed)?;
     let truth = Truth::of(&variants[0])?;
-    let mut next = |lane: &Lane| {
+    let asked: Vec<Lane> = wanted.methods.iter().flat_map(|&method| lanes(method, &variants)).collect();
+    // One to find out how much can be done in one, then the repeats.
+    let (mut done, mut total) = (0, asked.len() * (1 + plan.repeats));
+    let mut next = |lane: &Lane, total: usize| {
         watch(Progress { done, total, next: Some((lane.method, lane.variant.setting)) });
         done += 1;
     };
     let mut lanes = Vec::new();
-    for &method in &wanted.methods {
-        for variant in variants.iter().filter(|v| method.engine() != "reference" || v.setting == Setting::EXACT) {
-            let mut lane = Lane::new(method, variant);
-            next(&lane);
-            match lane.calibrate(gear, plan.run) {
-                Ok(true) => lanes.push(lane),
-                Ok(false) => failed.push(lane.failed("there is no GPU".to_owned())),
-                Err(EngineError::Unfit { why, .. }) => failed.push(lane.failed(why)),
-                Err(other) => return Err(other.into()),
+    for mut lane in asked {
+        next(&lane, total);
+        let why = match lane.calibrate(gear, plan.run) {
+            Ok(true) => {
+                lanes.push(lane);
+                continue;
             }
-        }
+            Ok(false) => "there is no GPU".to_owned(),
+            Err(EngineError::Unfit { why, .. }) => why,
+            Err(other) => return Err(other.into()),
+        };
+        failed.push(lane.failed(why));
+        total -= plan.repeats;
     }
     for repeat in 0..plan.repeats {
         for i in order(lanes.len(), repeat) {
-            next(&lanes[i]);
+            next(&lanes[i], total);
             lanes[i].repeat(gear, &truth)?;
         }
     }
@@ -187,11 +191,17 @@ pub fn tradeoff(
     })
 }
 
+/// A method at each setting; what is the truth itself, at that which trades nothing.
+fn lanes<'v>(method: Method, variants: &'v [Variant]) -> impl Iterator<Item = Lane<'v>> {
+    let is_wanted = move |v: &&Variant| !method.is_truth() || v.setting == Setting::EXACT;
+    variants.iter().filter(is_wanted).map(move |variant| Lane::new(method, variant))
+}
+
 /// The work as it is, then as each setting has it.
 fn variants(work: &Work, settings: &[Setting], failed: &mut Vec<Failed>) -> Result<Vec<Variant>, TradeoffError> {
     let mut variants = vec![Variant::exact(work)?];
     for &setting in settings.iter().filter(|&&s| s != Setting::EXACT) {
-        match Variant::new(work, setting) {
+        match variants[0].at(setting) {
             Ok(variant) if matches!(setting, Setting::Simplify(_)) && variant.is_like(&variants[0]) => {
                 let why = "it leaves no wall end out in this scene".to_owned();
                 failed.push(Failed { method: "all", setting: Some(setting), why });
@@ -297,7 +307,7 @@ impl<'v> Lane<'v> {
             steps: self.steps(),
             ns_per_step: Spread::of(self.ns.iter().copied())?,
             jumps: self.sample().iter().map(SettledTrace::jumps).sum(),
-            crossing_traces: self.sample().iter().filter(|trace| trace.violation().is_some()).count(),
+            crossing_traces: self.sample().iter().filter(|trace| trace.crossings() > 0).count(),
             event_mismatch: has_events.then_some(score.event_mismatch),
             final_mismatch: score.final_mismatch,
             length_error: LengthError { mean: score.length_error.mean, max: score.length_error.max },

@@ -37,6 +37,11 @@ impl Method {
         self.contender.needs_gpu()
     }
 
+    /// Whether it is what the others are compared with.
+    pub(super) fn is_truth(&self) -> bool {
+        self.contender.engine == REFERENCE.engine
+    }
+
     /// Whether it writes down what happens on the way.
     pub(super) fn has_events(&self) -> bool {
         self.contender.variant != FUNNEL_FINAL.variant

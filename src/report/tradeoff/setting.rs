@@ -6,9 +6,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::TradeoffError;
+use crate::geometry::number;
 use crate::scene::Model;
 use crate::simplify::{SimplifyError, simplify};
-use crate::trace::{SettledTrace, Trace, settle_strided};
+use crate::trace::{SettledTrace, Trace, settle};
 
 /// How much accuracy is given for speed, whatever the method.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +37,7 @@ impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Setting::Stride(k) => write!(f, "stride {k}"),
-            Setting::Simplify(tolerance) => write!(f, "simplify {tolerance}"),
+            Setting::Simplify(tolerance) => write!(f, "simplify {}", number(*tolerance)),
         }
     }
 }
@@ -65,7 +66,7 @@ impl Variant {
     ///
     /// The first trace that breaks the rules.
     pub(super) fn exact(work: &Work) -> Result<Self, TradeoffError> {
-        let traces: Vec<SettledTrace> = settled(&work.model, &work.traces, 1);
+        let traces: Vec<SettledTrace> = work.traces.par_iter().map(|trace| settle(&work.model, trace)).collect();
         match traces.iter().find_map(SettledTrace::violation) {
             Some(violation) => Err((*violation).into()),
             None => Ok(Variant { setting: Setting::EXACT, model: Arc::clone(&work.model), traces }),
@@ -77,24 +78,20 @@ impl Variant {
         self.model.vertices().len() == other.model.vertices().len()
     }
 
-    /// The work as `setting` has it.
+    /// The same as `setting` has it.
     ///
     /// # Errors
     ///
     /// A scene that cannot be simplified.
-    pub(super) fn new(work: &Work, setting: Setting) -> Result<Self, SimplifyError> {
+    pub(super) fn at(&self, setting: Setting) -> Result<Self, SimplifyError> {
         let model = match setting {
-            Setting::Stride(_) => Arc::clone(&work.model),
+            Setting::Stride(_) => Arc::clone(&self.model),
             Setting::Simplify(tolerance) => {
-                let anchor = work.model.anchor();
-                Arc::new(Model::new(simplify(work.model.scene(), &[anchor], tolerance)?, Some(anchor))?)
+                let anchor = self.model.anchor();
+                Arc::new(Model::new(simplify(self.model.scene(), &[anchor], tolerance)?, Some(anchor))?)
             }
         };
-        let traces = settled(&model, &work.traces, setting.stride());
+        let traces = self.traces.par_iter().map(|trace| trace.clone().coarsened(&model, setting.stride())).collect();
         Ok(Variant { setting, model, traces })
     }
-}
-
-fn settled(model: &Model, traces: &[Trace], stride: usize) -> Vec<SettledTrace> {
-    traces.par_iter().map(|trace| settle_strided(model, trace.clone(), stride)).collect()
 }

@@ -104,8 +104,8 @@ impl Counts {
             looks += record.steps + 1;
             counts.longest_trace = counts.longest_trace.max(record.steps);
             counts.jumps += trace.jumps() as u64;
-            counts.crossing[0] += u64::from(trace.violation().is_some());
-            counts.crossing[1] += trace.violations() as u64;
+            counts.crossing[0] += u64::from(trace.crossings() > 0);
+            counts.crossing[1] += trace.crossings() as u64;
             counts.events += record.events.len() as u64;
             counts.follow(setting, trace, record, &mut touched, &mut cells);
             let anchor = setting.model(record.trace).anchor();

@@ -110,7 +110,7 @@ impl Walks {
     }
 
     /// The same, as it is drawn.
-    pub(super) fn walk(&self, number: u64) -> Trace {
+    fn walk(&self, number: u64) -> Trace {
         let model = &self.room.model;
         let start = self.starts.draw(model, &mut Random::new(self.seed, Purpose::Start, number));
         let mut random = Random::new(self.seed, Purpose::Walk, number);

@@ -41,7 +41,7 @@ fn eval_sums_up_in_a_table() {
     for line in [
         "scene    s.geojson: 2 walls with 4 ends, anchor (0, 0)",
         "traces   4, 12 steps",
-        "events   4 wraps, 1 unwraps, 0.4167 a step",
+        "events   4 wraps, 1 unwrap, 0.4167 a step",
         "  over all traces                   mean      median         max",
         "  rope length at the end           10.25       9.500       22.00",
         "  longest rope on the way          12.25       13.00       23.00",
@@ -125,8 +125,8 @@ fn check_counts_what_is_there() {
     assert!(shown.contains("s.geojson: 2 walls, 4 vertices, anchor (0, 0)\n"), "{shown}");
     assert!(shown.contains("4, 12 steps; 0 of the traces cross walls\n"), "{shown}");
     let shown = folder.done("check --scene z.geojson --anchor 3,0").stdout;
-    assert!(shown.contains("1 walls, 2 vertices, anchor (3, 0)\n"), "{shown}");
-    assert!(shown.contains("1 walls of zero length were dropped\n") && !shown.contains("traces"), "{shown}");
+    assert!(shown.contains("1 wall, 2 vertices, anchor (3, 0)\n"), "{shown}");
+    assert!(shown.contains("1 wall of zero length was dropped\n") && !shown.contains("traces"), "{shown}");
     let shown = folder.done("check").stdout;
     assert!(shown.contains("the built-in floor plan: 467 walls") && shown.contains("4000, 2000000 steps"), "{shown}");
 }

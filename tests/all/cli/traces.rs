@@ -132,7 +132,7 @@ fn a_violation_that_is_flagged_leaves_the_others_as_they_are() {
     let warnings: Vec<_> = done.stderr.lines().collect();
     assert_eq!(warnings.len(), 1, "{}", done.stderr);
     assert!(warnings[0].starts_with("warning: t.csv: trace 6, step 1: the move from (1, 0) to (5, 0) crosses wall 0"));
-    assert!(done.stdout.contains("crossing 1 traces"), "{}", done.stdout);
+    assert!(done.stdout.contains("crossing 1 trace crosses a wall"), "{}", done.stdout);
     let text = folder.text("r.jsonl");
     let (flagged, others): (Vec<_>, Vec<_>) = text.lines().partition(|l| l.starts_with(r#"{"trace":6,"#));
     assert_eq!(others, expected.lines().collect::<Vec<_>>());

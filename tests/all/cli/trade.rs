@@ -77,12 +77,31 @@ fn simplified_walls_are_named_and_what_crosses_them_is_counted() {
     let rows: Vec<Value> = folder.text("b.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!((&rows[0]["status"], &rows[1]["status"]), (&json!("ok"), &json!("violation")));
     let table = folder.done(&format!("{eval} --simplify 0.4")).stdout;
-    assert!(table.contains("walls simplified by at most 0.4, 8 of 10 wall ends left (1 traces cross one, in 2 steps)"));
+    assert!(
+        table.contains("walls simplified by at most 0.4, 8 of 10 wall ends left (1 trace crosses one, in 2 steps)")
+    );
     // Less than the tooth is high leaves all as it is.
     folder.done(&format!("{eval} --simplify 0.1 --out c.jsonl"));
     assert!(folder.read("c.jsonl") == folder.read("a.jsonl"));
-    // Warned of where that is asked for.
-    assert!(folder.done(&format!("{eval} --simplify 0.4 --on-violation flag")).stderr.contains("trace 1, step 1"));
+}
+
+#[test]
+fn traces_that_break_the_rules_as_given_are_refused_whatever_is_traded() {
+    let folder = Folder::new();
+    folder.write("s.geojson", TOOTH);
+    // Trace 1 goes through the fence's bend and back.
+    folder.write("t.csv", "trace,x,y\n0,0,0\n0,1,2.5\n1,0,0\n1,-3.5,0.1\n1,-2,0.5\n");
+    let eval = "eval --scene s.geojson --traces t.csv --engine cpu";
+    folder.write("s.toml", "[scene]\nfile = 's.geojson'\n[walk]\nkind = 'given'\nfile = 't.csv'\n[run]\ntraces = 2\n");
+    for trade in ["", "--stride 2", "--simplify 0.4", "--simplify 1e-300", "--stride 2 --simplify 0.4"] {
+        folder.refused(2, &format!("{eval} {trade}"), &["t.csv: trace 1, step 1", "crosses wall"]);
+        folder.refused(2, &format!("study run s.toml {trade} --out no"), &["trace 1, step 1", "crosses wall"]);
+        let flagged = folder.done(&format!("{eval} {trade} --on-violation flag --out f.jsonl"));
+        assert!(flagged.stderr.contains("trace 1, step 1") && flagged.stdout.contains("crossing 1 trace crosses"));
+        let rows: Vec<Value> = folder.text("f.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert_eq!((&rows[0]["status"], &rows[1]["status"]), (&json!("ok"), &json!("violation")), "{trade}");
+        std::fs::remove_dir_all(folder.path("no")).unwrap();
+    }
 }
 
 #[test]
@@ -167,7 +186,11 @@ fn bad_values_are_refused() {
     let eval = "eval --scene s.geojson --traces t.csv";
     for command in [eval, "study run s.toml"] {
         for stride in ["0", "-1", "1.5", "x"] {
-            folder.refused(2, &format!("{command} --stride={stride}"), &["--stride", "whole number from 1 on"]);
+            folder.refused(
+                2,
+                &format!("{command} --stride={stride}"),
+                &["--stride", "whole number from 1 to 4294967295"],
+            );
         }
         for tolerance in ["0", "-1", "nan", "inf", "x"] {
             folder.refused(2, &format!("{command} --simplify={tolerance}"), &["--simplify", "number above 0"]);

@@ -33,7 +33,8 @@ fn every_method_runs_at_every_setting() {
     for method in methods {
         for setting in ["stride 1", "stride 3", "simplify 0.2", "simplify 1.5"] {
             let ran = points.iter().filter(|p| text(p, "method") == method && text(p, "setting") == setting).count();
-            let is_explained = failed.iter().any(|f| f["setting"] == setting && !text(f, "why").is_empty());
+            let is_meant = |f: &Value| f["setting"] == setting && [method, "all"].contains(&text(f, "method"));
+            let is_explained = failed.iter().any(|f| is_meant(f) && !text(f, "why").is_empty());
             assert!(ran == 1 || (ran == 0 && is_explained), "{method}, {setting}");
         }
     }
@@ -130,7 +131,7 @@ fn bad_usage_is_told_with_what_would_do() {
     folder.refused(2, "tradeoff --traces 0", &["--traces 0", "at least one"]);
     folder.refused(2, "tradeoff --traces no.csv", &["no.csv"]);
     for stride in ["0", "-2", "1.5", "x", "2,,3"] {
-        folder.refused(2, &format!("tradeoff --stride={stride}"), &["--stride", "whole number from 1 on"]);
+        folder.refused(2, &format!("tradeoff --stride={stride}"), &["--stride", "whole number from 1 to 4294967295"]);
     }
     for tolerance in ["0", "-1", "nan", "inf", "x"] {
         folder.refused(2, &format!("tradeoff --simplify={tolerance}"), &["--simplify", "number above 0"]);

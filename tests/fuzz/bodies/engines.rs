@@ -1,18 +1,19 @@
 //! Any scene and any traces: all engines give the reference's ropes.
 
-use std::slice;
 use std::sync::LazyLock;
+use std::{iter, slice};
 
 use tautline::candidates::{LISTS_BUDGET, Lists};
 use tautline::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Reference};
 use tautline::gpu::{AdapterChoice, Device, SWEEP_WGSL};
 use tautline::rope::{TraceRecord, replay};
 use tautline::scene::Model;
+use tautline::simplify::simplify;
 use tautline::trace::SettledTrace;
 
 use super::recipe::recipe;
 
-/// `cpu`, as it is and with other windows and lists, and `funnel` against `reference`.
+/// `cpu`, as it is and with other windows and lists, and `funnel` against `reference`; then coarser traces.
 pub(super) fn cpu(input: &[u8]) {
     let Some((model, traces)) = recipe(input) else { return };
     let truth = agree(&model, &traces);
@@ -34,6 +35,21 @@ pub(super) fn cpu(input: &[u8]) {
                 Err(error) => panic!("{error}"),
             }
         }
+    }
+    coarser(&model, &traces, input.len());
+}
+
+/// The same traces on coarser terms, among the walls as they are and simplified: `cpu` against `reference`. How coarse, the input's
+/// length says.
+fn coarser(model: &Model, traces: &[SettledTrace], length: usize) {
+    let (low, high) = model.bounds();
+    let tolerance = (high - low).max_element() * 2f64.powi(-(length as i32 % 24));
+    let simple = simplify(model.scene(), &[model.anchor()], tolerance).ok();
+    let simple = simple.map(|scene| Model::new(scene, Some(model.anchor())).unwrap_or_else(|e| panic!("{e}")));
+    for used in iter::once(model).chain(&simple) {
+        let coarse: Vec<_> = traces.iter().map(|trace| trace.clone().coarsened(used, 1 + length % 5)).collect();
+        let records = agree(used, &coarse);
+        coarse.iter().zip(&records).for_each(|(trace, record)| is_sound(used, trace, record));
     }
 }
 
