@@ -6,7 +6,7 @@ use tautline::trace::{Violation, ViolationKind};
 use super::batches::Batches;
 use super::failure::Failure;
 use super::input::InputArgs;
-use super::summary::counted;
+use super::summary::{counted, dropped};
 use super::trade::Terms;
 use super::{interrupt, print, print_json};
 
@@ -53,9 +53,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         anchor.y
     );
     if scene.dropped() > 0 {
-        let dropped = scene.dropped() as u64;
-        text +=
-            &format!("        {} dropped\n", counted(dropped, "wall of zero length was", "walls of zero length were"));
+        text += &format!("        {}\n", dropped(scene.dropped()));
     }
     if let Some(Counts { traces, steps, crossing, .. }) = counts {
         text += &format!("traces  {traces}, {steps} steps; {crossing} of the traces cross walls\n");

@@ -16,7 +16,7 @@ use super::input::InputArgs;
 use super::interrupt::{self, Writing};
 use super::output::Output;
 use super::progress::{Progress, with_progress};
-use super::summary::{Summary, Times, counted};
+use super::summary::{Summary, Times, dropped};
 use super::trade::TradeArgs;
 use super::{print, print_json};
 
@@ -50,8 +50,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let terms = args.trade.terms(&args.input.name(), args.input.model()?)?;
     let model = &terms.used;
     if model.scene().dropped() > 0 {
-        let dropped = model.scene().dropped() as u64;
-        eprintln!("note: {} dropped", counted(dropped, "wall of zero length was", "walls of zero length were"));
+        eprintln!("note: {}", dropped(model.scene().dropped()));
     }
     let source = args.input.source()?;
     let (mut engine, on) = args.engine.open(model)?;

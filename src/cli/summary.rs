@@ -78,6 +78,11 @@ pub(super) fn counted(count: u64, one: &str, several: &str) -> String {
     format!("{} {}", grouped(count), if count == 1 { one } else { several })
 }
 
+/// What is said of walls that were dropped.
+pub(super) fn dropped(walls: usize) -> String {
+    counted(walls as u64, "wall of zero length was dropped", "walls of zero length were dropped")
+}
+
 /// A count with commas between its thousands.
 pub(super) fn grouped(count: u64) -> String {
     let digits = count.to_string();

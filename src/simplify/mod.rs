@@ -81,7 +81,7 @@ pub fn simplify(scene: &Scene, anchors: &[DVec2], tolerance: f64) -> Result<Scen
         return Err(SimplifyError::Tolerance(tolerance));
     }
     let model = Model::new(scene.clone(), Some(anchors[0]))?;
-    anchors.iter().try_for_each(|&anchor| model.tied(anchor).map(drop))?;
+    anchors[1..].iter().try_for_each(|&anchor| model.tied(anchor).map(drop))?;
     let visibility = Visibility::new(&model).ok_or(SimplifyError::Span)?;
     let mut thinning = Thinning::new(&model, &visibility, anchors, tolerance);
     thinning.run();

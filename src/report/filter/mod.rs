@@ -43,9 +43,9 @@ impl Filter {
     }
 
     /// The queries of `traces`, in windows from event to event as engines fold them, each about the vertices that the pivot
-    /// sees; without those that go on from the middle of a leg in which something happened. The traces keep to the rules, start at the anchor and touch no wall, as those of
-    /// [`settled_walks`](crate::example::settled_walks) do. On all cores; every vertex tried is compared with every leg,
-    /// exactly.
+    /// sees; without those that go on from the middle of a leg in which something happened. The traces keep to the rules, start
+    /// at the anchor and touch no wall, as those of [`settled_walks`](crate::example::settled_walks) do. On all cores; every
+    /// vertex tried is compared with every leg, exactly.
     ///
     /// # Errors
     ///
