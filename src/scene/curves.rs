@@ -101,6 +101,14 @@ impl Outlines {
         self.pieces.push(Piece::Object);
     }
 
+    /// Takes the last object back, for which nothing was drawn.
+    pub(super) fn take_back(&mut self) {
+        if let Some(Piece::Object) = self.pieces.last() {
+            self.pieces.pop();
+            self.objects.pop();
+        }
+    }
+
     /// A pen that draws here what it is told in other coordinates.
     pub(super) fn pen(&mut self, transform: DAffine2) -> Pen<'_> {
         Pen::new(self, transform)

@@ -195,9 +195,13 @@ fn listed(counts: &BTreeMap<&str, usize>) -> String {
 
 /// Whether `name` looks as if it was to mark the anchor, such as `Anchor`, `anchors` and `anchor 2`, but for the right one.
 fn nearly_anchor(name: &str) -> bool {
-    let name = name.trim().to_lowercase();
-    let rest = name.strip_prefix("anchor").map(|rest| rest.strip_prefix('s').unwrap_or(rest));
-    rest.is_some_and(|rest| rest.starts_with("point") || !rest.starts_with(char::is_alphabetic))
+    let name = name.trim();
+    if !name.get(..6).is_some_and(|start| start.eq_ignore_ascii_case("anchor")) {
+        return false;
+    }
+    let rest = name[6..].to_lowercase();
+    let rest = rest.strip_prefix('s').unwrap_or(&rest);
+    rest.starts_with("point") || !rest.starts_with(char::is_alphabetic)
 }
 
 /// The start of `text`: a line of some other file may be very long.

@@ -21,6 +21,7 @@ mod random;
 mod required;
 mod scenes;
 mod shader;
+mod shown;
 mod simplify;
 mod stride;
 mod study_truth;

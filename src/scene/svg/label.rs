@@ -37,13 +37,13 @@ const MADE_UP: [&str; 24] = [
 
 /// What people call the element: its label in Inkscape, in Illustrator, its title, or an id that no program made up.
 pub(super) fn label(node: Node<'_, '_>) -> Option<String> {
-    let names = names(node);
-    names[..3].iter().flatten().find(|name| !name.is_empty()).or(names[3].as_ref().filter(|id| !made_up(id))).cloned()
+    let [label, data, title, id] = names(node).map(|name| name.filter(|name| !name.is_empty()));
+    label.or(data).or(title).or(id.filter(|id| !made_up(id))).map(short)
 }
 
 /// Whether something that the element is called passes `test`.
 pub(super) fn is_called(node: Node<'_, '_>, test: impl Fn(&str) -> bool) -> bool {
-    names(node).iter().flatten().any(|name| test(name))
+    names(node).into_iter().flatten().any(test)
 }
 
 /// What a layer is called: one that people have not named has an id.
@@ -52,15 +52,15 @@ pub(super) fn layer(node: Node<'_, '_>) -> Option<String> {
     label(node).or_else(|| node.attribute("id").filter(|_| is_layer).map(short))
 }
 
-/// Labels, titles and the id.
-fn names(node: Node<'_, '_>) -> [Option<String>; 4] {
+/// Labels, title and id, without spaces round them.
+fn names<'a>(node: Node<'a, '_>) -> [Option<&'a str>; 4] {
     let title = node.children().find(|child| child.tag_name().name() == "title").and_then(|title| title.text());
     [node.attribute((INKSCAPE, "label")), node.attribute("data-name"), title, node.attribute("id")]
-        .map(|name| name.map(short))
+        .map(|name| name.map(str::trim))
 }
 
 fn short(text: &str) -> String {
-    let text: String = text.trim().chars().take(LENGTH_MAX).collect();
+    let text: String = text.chars().take(LENGTH_MAX).collect();
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

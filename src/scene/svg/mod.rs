@@ -195,6 +195,11 @@ impl<'a, 'i> Reader<'a, 'i> {
         let cut = |name| style.get(name).is_some_and(|value| !value.is(&["none"]));
         self.counts.clipped += usize::from(cut("clip-path") || cut("mask"));
         let own = transform::own(&style, outer.viewport).map_err(|what| fault_at(node, &what))?;
+        // What is pressed flat is not drawn.
+        if own.matrix2.determinant() == 0.0 {
+            self.counts.hidden += 1;
+            return Ok(None);
+        }
         let (paint, unread) = outer.paint.within(&style, outer.viewport, |id| self.ids.contains_key(id));
         unread.iter().for_each(|what| self.styles.unread.add(what));
         let context = Context { transform: outer.transform * own, paint, depth: outer.depth + 1, ..*outer };
@@ -315,5 +320,7 @@ impl<'a, 'i> Reader<'a, 'i> {
     }
 }
 
+#[cfg(test)]
+mod looks_tests;
 #[cfg(test)]
 mod tests;

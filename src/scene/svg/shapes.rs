@@ -97,7 +97,7 @@ impl Shape<'_, '_, '_> {
         let drawn = if radii.min_element() == 0.0 {
             pen.polyline(&[low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)], true)
         } else {
-            rounded(pen, [low, high], radii)
+            rounded(pen, [low, high], radii, [radii.x == size.x / 2.0, radii.y == size.y / 2.0])
         };
         drawn.map_err(|fault| fault.to_string())
     }
@@ -142,11 +142,11 @@ fn in_quotes(text: &str) -> Option<&str> {
     inside[1..].strip_suffix(quote).filter(|data| !data.contains(quote))
 }
 
-/// A rectangle with rounded corners, from its upper left one on. Where corners meet there is no straight line between them.
-fn rounded(pen: &mut Pen<'_>, [low, high]: [DVec2; 2], radii: DVec2) -> Drawn {
+/// A rectangle with rounded corners, from its upper left one on. Where corners meet, along x or along y, there is no straight
+/// line between them.
+fn rounded(pen: &mut Pen<'_>, [low, high]: [DVec2; 2], radii: DVec2, met: [bool; 2]) -> Drawn {
     let [a, b] = [DVec2::new(radii.x, 0.0), DVec2::new(0.0, radii.y)];
     let middle = (low + high) / 2.0;
-    let met = [radii.x * 2.0 == high.x - low.x, radii.y * 2.0 == high.y - low.y];
     // Where the arcs begin and end, counted from either side.
     let near = [if met[0] { middle.x } else { low.x + radii.x }, if met[1] { middle.y } else { low.y + radii.y }];
     let far = [if met[0] { middle.x } else { high.x - radii.x }, if met[1] { middle.y } else { high.y - radii.y }];

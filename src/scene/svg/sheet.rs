@@ -195,7 +195,9 @@ mod tests {
             #c{d:path('M0 0;}');r:1px}.empty{font:x}";
         let (rules, note) = read(text);
         let both = "fill:none;stroke:url('a;}b')!";
-        assert_eq!(rules, [format!(".a {both}"), format!("g > .b {both}"), "#c d:path('M0 0;}');r:1px".into()]);
+        let expected = [format!("*[class~='a'] {both}"), format!("g > *[class~='b'] {both}")];
+        assert_eq!(rules[..2], expected);
+        assert_eq!(rules[2..], ["*[id='c'] d:path('M0 0;}');r:1px"]);
         assert_eq!(note, None);
         assert_eq!(read("a{r:1px /* } */ ; /* x */ cx:2px").0, ["a r:1px /* } */;cx:2px"]);
     }
