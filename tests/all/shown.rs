@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use glam::DVec2;
-use tautline::scene::{Inside, Scene, read_scene};
+use tautline::scene::{Inside, Model, Scene, read_scene};
+use tautline::trace::{Trace, settle};
 
 fn read(name: &str) -> Result<Scene, String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/formats").join(name);
@@ -25,7 +26,9 @@ fn says(scene: &Scene, note: &str) -> bool {
 #[test]
 fn a_flat_bow_is_as_large_as_it_is_seen() {
     // A wall that bends by less than a millimetre is an arc of a circle of 40 km.
-    for (name, curves) in [("bow.svg", 2), ("bow_ref.svg", 1), ("bow_arc.dxf", 2), ("bow_min.dxf", 2), ("bow_ref.dxf", 1)] {
+    for (name, curves) in
+        [("bow.svg", 2), ("bow_ref.svg", 1), ("bow_arc.dxf", 2), ("bow_min.dxf", 2), ("bow_ref.dxf", 1)]
+    {
         let room = scene(name);
         let note = format!("walls lie within 0.005 of the curves that they stand for (--flatten); curves: {curves}");
         // Alone, the arc and the pillar reach from 0 to 10.
@@ -33,6 +36,19 @@ fn a_flat_bow_is_as_large_as_it_is_seen() {
         let centre = DVec2::new(7.0, 3.0);
         let on = |p: &&DVec2| (p.distance(centre) - 0.3).abs() < 1e-9;
         assert!(room.vertices().iter().filter(on).count() >= 12, "{name}");
+    }
+}
+
+#[test]
+fn a_trace_that_ends_in_the_pillar_is_told_of() {
+    // Its second point lies in the round pillar, but beside the square with its corners on the pillar.
+    let points = [[5.0, 5.0], [7.2, 3.2], [8.0, 4.0]].map(DVec2::from);
+    for name in ["bow.svg", "bow_arc.dxf"] {
+        let model = Model::new(scene(name), None).unwrap();
+        let settled = settle(&model, &Trace { id: 0, points: points.to_vec() });
+        let violation = settled.violation().unwrap_or_else(|| panic!("{name}: nothing is told"));
+        assert_eq!(violation.step, 1, "{name}");
+        assert!(violation.ends.iter().all(|p| (p.distance(DVec2::new(7.0, 3.0)) - 0.3).abs() < 1e-9), "{name}");
     }
 }
 

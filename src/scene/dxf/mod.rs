@@ -146,7 +146,10 @@ impl<'a> Reader<'a> {
         }
         if !self.elsewhere.is_empty() {
             let files = self.elsewhere.iter().map(|(file, count)| (file.as_str(), *count)).collect();
-            scene.note(format!("what lies in other files is missing; inserts of external references: {}", listed(&files)));
+            scene.note(format!(
+                "what lies in other files is missing; inserts of external references: {}",
+                listed(&files)
+            ));
         }
         if let (1.., widest) = self.wide {
             let widest: f64 = format!("{widest:.2e}").parse().unwrap_or(widest);
@@ -196,7 +199,9 @@ impl<'a> Reader<'a> {
         }
         // These have coordinates of their own, seen along their normal.
         let mut transform = context.transform;
-        if matches!(entity.kind, "ARC" | "CIRCLE" | "LWPOLYLINE" | "POLYLINE" | "SOLID" | "TRACE") && upside(entity)? < 0.0 {
+        if matches!(entity.kind, "ARC" | "CIRCLE" | "LWPOLYLINE" | "POLYLINE" | "SOLID" | "TRACE")
+            && upside(entity)? < 0.0
+        {
             transform *= MIRRORED;
         }
         // Names take room too where something is inserted again and again.

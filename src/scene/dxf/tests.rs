@@ -243,13 +243,15 @@ fn notes(blocks: &[(&str, &str)], entities: &str, after: &str) -> Vec<String> {
 
 #[test]
 fn clips_and_other_files_are_told_of() {
-    let blocks = [("2=A", LINE), ("2=plan 70=4 1=site/plan.dwg", ""), ("2=over 70=12", ""), ("2=bound 70=4 1=x.dwg", LINE)];
+    let blocks =
+        [("2=A", LINE), ("2=plan 70=4 1=site/plan.dwg", ""), ("2=over 70=12", ""), ("2=bound 70=4 1=x.dwg", LINE)];
     let insert = "INSERT 2=A 102={ACAD_XDICTIONARY 360=36 102=} 10=0 20=0";
     let objects = |on: &str| {
         let dictionaries = "DICTIONARY 5=36 3=ACAD_FILTER 350=37 DICTIONARY 5=37 3=SPATIAL 360=38";
         format!("SECTION 2=OBJECTS {dictionaries} SPATIAL_FILTER 5=38 70=2 {on} ENDSEC")
     };
-    let note = |count: usize| vec![format!("clips of inserted blocks (XCLIP) cut no walls; inserts taken whole: {count}")];
+    let note =
+        |count: usize| vec![format!("clips of inserted blocks (XCLIP) cut no walls; inserts taken whole: {count}")];
     assert_eq!(notes(&blocks, insert, &objects("71=1")), note(1));
     assert_eq!(notes(&blocks, &format!("{insert} {insert} INSERT 2=A 10=0 20=0"), &objects("")), note(2));
     assert_eq!(notes(&blocks, insert, &objects("71=0")), [""; 0]);
@@ -282,7 +284,7 @@ fn what_nearly_marks_the_anchor_is_told_of() {
     let point = "POINT 8=Anchors 10=0 20=0";
     assert_eq!(notes(&[], point, ""), [format!("POINT in line 12 lies on the layer \"Anchors\"{right}")]);
     let block = [("2=ANCHOR", LINE)];
-    let expected = format!("INSERT in line 30 is of the block \"ANCHOR\"{right}");
+    let expected = format!("INSERT in line 28 is of the block \"ANCHOR\"{right}");
     assert_eq!(notes(&block, "INSERT 2=ANCHOR 10=0 20=0", ""), [expected]);
     assert_eq!(notes(&[], &format!("{point} POINT 8=anchor 10=1 20=1"), ""), [""; 0]);
 }

@@ -9,30 +9,8 @@ const LENGTH_MAX: usize = 200;
 
 /// What programs make up ids of, with a number behind.
 const MADE_UP: [&str; 24] = [
-    "SVGID",
-    "XMLID",
-    "a",
-    "circle",
-    "ellipse",
-    "flowRoot",
-    "g",
-    "group",
-    "id",
-    "image",
-    "layer",
-    "line",
-    "path",
-    "polygon",
-    "polyline",
-    "rect",
-    "spiral",
-    "star",
-    "svg",
-    "switch",
-    "symbol",
-    "text",
-    "tspan",
-    "use",
+    "SVGID", "XMLID", "a", "circle", "ellipse", "flowRoot", "g", "group", "id", "image", "layer", "line", "path",
+    "polygon", "polyline", "rect", "spiral", "star", "svg", "switch", "symbol", "text", "tspan", "use",
 ];
 
 /// What people call the element: its label in Inkscape, in Illustrator, its title, or an id that no program made up.
@@ -89,7 +67,9 @@ mod tests {
         assert_eq!(of("id='x' inkscape:label=' a  hall '", "<title>t</title>"), both("a hall"));
         assert_eq!(of("id='x'", "<title>the\n door</title>"), both("the door"));
         assert_eq!(of("id='_x31_' data-name='1'", ""), both("1"));
-        for id in ["rect123", "path45-6", "g77", "use12-3-4", "layer1", "XMLID_1_", "SVGID_00001_", "123", "_7_", "id-3"] {
+        for id in
+            ["rect123", "path45-6", "g77", "use12-3-4", "layer1", "XMLID_1_", "SVGID_00001_", "123", "_7_", "id-3"]
+        {
             assert_eq!(of(&format!("id='{id}'"), "").0, None, "{id}");
         }
         assert_eq!(of("", ""), (None, None));

@@ -138,7 +138,10 @@ fn style_sheets_place_and_size() {
     let moved = "transform='translate(7)'";
     assert_eq!(walls(&format!("<g {moved} style='transform:scale(2)'>{line}</g>")), [[0., 0., 100., 0.]]);
     assert_eq!(walls(&format!("<g {moved} style='transform:none'>{line}</g>")), [[0., 0., 50., 0.]]);
-    assert_eq!(walls(&format!("<g transform='rotate(90)' transform-origin='10 0'>{line}</g>")), [[10., -10., 10., 40.]]);
+    assert_eq!(
+        walls(&format!("<g transform='rotate(90)' transform-origin='10 0'>{line}</g>")),
+        [[10., -10., 10., 40.]]
+    );
     let middle = "transform:rotate(180deg);transform-origin:center";
     assert_eq!(walls(&format!("<g style='{middle}'>{line}</g>")), [[100., 50., 50., 50.]]);
     let sheet = "<style>rect{width:3px;height:25%;X:1px} #s{height:7px}</style>";
@@ -173,7 +176,9 @@ fn what_is_not_understood_of_styles_is_counted() {
 #[test]
 fn nested_drawings_that_reach_beyond_their_edges_are_told_of() {
     let note = |count: usize| {
-        format!("nested drawings and symbols are not cut at their edges; elements that reach beyond, taken whole: {count}")
+        format!(
+            "nested drawings and symbols are not cut at their edges; elements that reach beyond, taken whole: {count}"
+        )
     };
     let svg = |style: &str, inside: &str| format!("<svg x='10' y='10' width='20' height='20' {style}>{inside}</svg>");
     let long = "<path d='M-5,10 H60'/>";
@@ -217,7 +222,8 @@ fn a_unit_is_what_both_sides_say() {
 
 #[test]
 fn markers_and_wide_strokes_are_told_of() {
-    let lines = "<path d='M0,0 H100 V50' style='marker-end:url(#m)'/><g marker-mid='url(#m)'><rect width='1' height='1'/></g>";
+    let lines =
+        "<path d='M0,0 H100 V50' style='marker-end:url(#m)'/><g marker-mid='url(#m)'><rect width='1' height='1'/></g>";
     let note = "markers such as arrow heads are no walls, but the lines that bear them are; lines with markers: 1";
     assert_eq!(notes(lines), [note]);
     let strokes = "<path d='M0,0 H100' stroke='red' stroke-width='3'/><g transform='scale(4)' stroke='red'>\

@@ -80,10 +80,8 @@ pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
         return Err(fault_at(root, &what));
     }
     let mut reader = Reader::new(&document, text.len());
-    let (viewport, unit) =
-        viewport_of(root, &reader.styles.of_element(root)).map_err(|what| fault_at(root, &what))?;
-    let outer =
-        Context { transform: DAffine2::IDENTITY, paint: Paint::default(), viewport, depth: 0, user: None };
+    let (viewport, unit) = viewport_of(root, &reader.styles.of_element(root)).map_err(|what| fault_at(root, &what))?;
+    let outer = Context { transform: DAffine2::IDENTITY, paint: Paint::default(), viewport, depth: 0, user: None };
     if let Some((context, _)) = reader.context(root, &outer)? {
         reader.children(root, &context)?;
     }
@@ -240,7 +238,8 @@ impl<'a, 'i> Reader<'a, 'i> {
         self.insides(node, style, context)?;
         self.in_anchor = false;
         let mark = std::mem::replace(&mut self.outlines, walls);
-        let centre = Shape { node, style, viewport: context.viewport }.centre().map_err(|what| fault_at(node, &what))?;
+        let centre =
+            Shape { node, style, viewport: context.viewport }.centre().map_err(|what| fault_at(node, &what))?;
         let at = match (centre, mark.bounds()) {
             (Some(centre), _) => context.transform.transform_point2(centre),
             (None, Some([low, high])) => low + (high - low) / 2.0,
@@ -268,7 +267,9 @@ impl<'a, 'i> Reader<'a, 'i> {
                     "svg" => self.viewport(node, style, None, &within)?,
                     "switch" => {
                         let usual = |n: &Node<'_, '_>| {
-                            n.is_element() && !n.has_attribute("requiredExtensions") && !n.has_attribute("systemLanguage")
+                            n.is_element()
+                                && !n.has_attribute("requiredExtensions")
+                                && !n.has_attribute("systemLanguage")
                         };
                         node.children().find(usual).map_or(Ok(()), |child| self.element(child, &within))?;
                     }

@@ -38,14 +38,22 @@ impl Counts<'_> {
         count(self.hidden, "hidden elements, which are no walls");
         count(self.unpainted, "shapes neither filled nor stroked, or of opacity 0, which are no walls");
         count(self.clipped, "clip paths and masks cut no walls; elements taken whole");
-        count(self.beyond, "nested drawings and symbols are not cut at their edges; elements that reach beyond, taken whole");
-        count(self.marked, "markers such as arrow heads are no walls, but the lines that bear them are; lines with markers");
+        count(
+            self.beyond,
+            "nested drawings and symbols are not cut at their edges; elements that reach beyond, taken whole",
+        );
+        count(
+            self.marked,
+            "markers such as arrow heads are no walls, but the lines that bear them are; lines with markers",
+        );
         let wide = self.widths.iter().filter(|&&width| width > side * WIDE);
         let widest = wide.clone().copied().fold(0.0, f64::max);
         let widest: f64 = format!("{widest:.2e}").parse().unwrap_or(widest);
         count(wide.count(), &format!("walls are the middle of strokes, whose widest is {widest} wide; wide strokes"));
         if let Some(nearly) = self.nearly.as_ref().filter(|_| scene.anchor().is_none()) {
-            scene.note(format!("{nearly} and is taken for what it draws; the id or label that marks the anchor is \"anchor\""));
+            scene.note(format!(
+                "{nearly} and is taken for what it draws; the id or label that marks the anchor is \"anchor\""
+            ));
         }
         if !self.passed.is_empty() {
             scene.note(format!("passed over: {}", listed(&self.passed)));

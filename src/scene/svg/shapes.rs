@@ -246,7 +246,11 @@ mod tests {
         assert!(straight.iter().all(|side| found.contains(side)), "{found:?}");
         let off = |[x, y]: [f64; 2]| {
             let x = (x - 210.0).abs() - 66.0;
-            if x > 0.0 { ((x / 134.0).hypot((y - 110.0) / 100.0) - 1.0).abs() } else { ((y - 110.0).abs() - 100.0).abs() }
+            if x > 0.0 {
+                ((x / 134.0).hypot((y - 110.0) / 100.0) - 1.0).abs()
+            } else {
+                ((y - 110.0).abs() - 100.0).abs()
+            }
         };
         assert!(found.iter().all(|w| off([w[0], w[1]]) < 1e-12));
         // With sizes that are no sums of powers of two, no tiny wall comes in between either.

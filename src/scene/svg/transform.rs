@@ -17,11 +17,8 @@ pub(super) fn own(style: &Style<'_>, viewport: Option<DVec2>) -> Result<DAffine2
     let mut all = DAffine2::IDENTITY;
     for name in ["translate", "rotate", "scale", "transform"] {
         if let Some(value) = said(name) {
-            all *= if value.css {
-                css_transform::property(name, value.text, viewport)?
-            } else {
-                transform(value.text)?
-            };
+            all *=
+                if value.css { css_transform::property(name, value.text, viewport)? } else { transform(value.text)? };
         }
     }
     let turned = all.matrix2 != DMat2::IDENTITY;
