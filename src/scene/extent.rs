@@ -18,26 +18,24 @@ pub(super) fn extent(pieces: &[Piece], transform: DAffine2) -> Option<[DVec2; 2]
     });
     let [mut low, mut high] = ends.map(|p| [p, p]).reduce(|[l, h], [p, _]| [l.min(p), h.max(p)])?;
     for piece in pieces {
-        match piece {
-            Piece::Curve(curve, _) => match &**curve {
-                Curve::Bezier(points) => {
-                    for axis in 0..2 {
-                        let along: Vec<f64> = points.iter().map(|&p| place(p)[axis]).collect();
-                        low[axis] = -highest(along.iter().map(|x| -x).collect(), -low[axis]);
-                        high[axis] = highest(along, high[axis]);
-                    }
+        let Piece::Curve(curve, _) = piece else { continue };
+        match &**curve {
+            Curve::Bezier(points) => {
+                for axis in 0..2 {
+                    let along: Vec<f64> = points.iter().map(|&p| place(p)[axis]).collect();
+                    low[axis] = -highest(along.iter().map(|x| -x).collect(), -low[axis]);
+                    high[axis] = highest(along, high[axis]);
                 }
-                Curve::Ellipse(e) => {
-                    let [a, b] = [e.a, e.b].map(|v| transform.transform_vector2(v));
-                    let e = Ellipse { centre: place(e.centre), a, b, ..*e };
-                    for axis in 0..2 {
-                        let [l, h] = turns(&e, axis);
-                        low[axis] = l.map_or(low[axis], |l| low[axis].min(l));
-                        high[axis] = h.map_or(high[axis], |h| high[axis].max(h));
-                    }
+            }
+            Curve::Ellipse(e) => {
+                let [a, b] = [e.a, e.b].map(|v| transform.transform_vector2(v));
+                let e = Ellipse { centre: place(e.centre), a, b, ..*e };
+                for axis in 0..2 {
+                    let [l, h] = turns(&e, axis);
+                    low[axis] = l.map_or(low[axis], |l| low[axis].min(l));
+                    high[axis] = h.map_or(high[axis], |h| high[axis].max(h));
                 }
-            },
-            _ => {}
+            }
         }
     }
     Some([low, high])
