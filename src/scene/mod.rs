@@ -3,6 +3,8 @@
 mod cells;
 mod curves;
 mod dxf;
+mod extent;
+mod flattened;
 mod geographic;
 mod geojson;
 mod grid;
@@ -192,6 +194,17 @@ impl Scene {
 fn listed(counts: &BTreeMap<&str, usize>) -> String {
     let all: Vec<String> = counts.iter().map(|(name, count)| format!("{count} {name}")).collect();
     all.join(", ")
+}
+
+/// Whether `name` looks as if it was to mark the anchor, such as `Anchor`, `anchors` and `anchor 2`, but for the right one.
+fn nearly_anchor(name: &str) -> bool {
+    let name = name.trim();
+    if !name.get(..6).is_some_and(|start| start.eq_ignore_ascii_case("anchor")) {
+        return false;
+    }
+    let rest = name[6..].to_lowercase();
+    let rest = rest.strip_prefix('s').unwrap_or(&rest);
+    rest.starts_with("point") || !rest.starts_with(char::is_alphabetic)
 }
 
 /// The start of `text`: a line of some other file may be very long.

@@ -22,6 +22,7 @@ mod random;
 mod required;
 mod scenes;
 mod shader;
+mod shown;
 mod simplify;
 mod stride;
 mod study_truth;
