@@ -22,6 +22,7 @@ mod required;
 mod scenes;
 mod shader;
 mod simplify;
+mod simulated_again;
 mod stride;
 mod study_truth;
 mod support;

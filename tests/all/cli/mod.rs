@@ -6,15 +6,18 @@ mod convert;
 mod draw;
 mod engines;
 mod extremes;
+mod newcomer;
 mod process;
 mod reports;
 mod results;
 mod scenes;
+mod schema;
 mod study;
 mod traces;
 mod trade;
 mod tradeoff;
 mod usage;
+mod words;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
