@@ -52,7 +52,7 @@ pub(super) const COMPLETIONS: &str = "Examples:
   tautline completions fish > ~/.config/fish/completions/tautline.fish";
 
 pub(super) const MAN: &str = "Examples:
-  tautline man ~/.local/share/man/man1                       then: man -M ~/.local/share/man tautline";
+  tautline man ~/.local/share/man/man1          then: man -M ~/.local/share/man tautline";
 
 pub(crate) const STUDY_RUN: &str = "Examples:
   tautline study run                                         the built-in example

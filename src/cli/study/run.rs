@@ -345,6 +345,9 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
         let share = plan.run.count() as f64 / f64::from(args.shard.of()) / traces as f64;
         let all = Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX);
         text += &format!("about {}, going by the first {traces} of the traces\n", show::duration(all));
+        if let Some(steps) = show::standing(&state.summary(study)) {
+            text += &format!("{steps} in these\n");
+        }
     }
     print(&text)
 }

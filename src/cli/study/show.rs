@@ -47,14 +47,8 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     };
     let [traces, steps, events] = [summary.traces, summary.steps, summary.events].map(grouped);
     line(format_args!("{traces} traces, {steps} steps, {events} events; {why}"));
-    if let Some(still) = summary.still {
-        let met = match (summary.at_walls, summary.study.walk.at_walls()) {
-            (Some(share), Some(AtWalls::Redraw)) => format!(", {} were drawn again at walls", percent(share)),
-            (Some(share), Some(AtWalls::Reject)) => format!(", {} were not taken at walls", percent(share)),
-            (Some(share), Some(AtWalls::Reflect)) => format!(", {} were thrown back at walls", percent(share)),
-            _ => String::new(),
-        };
-        line(format_args!("{} of the steps stood still{met}", percent(still)));
+    if let Some(words) = standing(summary) {
+        line(format_args!("{words}"));
     }
     if let Some(seconds) = run.and_then(|run| run["seconds"].as_f64()) {
         // Those of earlier runs took other seconds.
@@ -132,6 +126,18 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
         line(format_args!("  {turns:24}  {:>7}  {}", percent(rope.share.value), shares(&rope.share)));
     }
     text
+}
+
+/// Which share of the steps stood still, and which met a wall; `None` if there are no steps.
+pub(super) fn standing(summary: &Summary) -> Option<String> {
+    let still = percent(summary.still?);
+    let met = match (summary.at_walls, summary.study.walk.at_walls()) {
+        (Some(share), Some(AtWalls::Redraw)) => format!(", {} were drawn again at walls", percent(share)),
+        (Some(share), Some(AtWalls::Reject)) => format!(", {} were not taken at walls", percent(share)),
+        (Some(share), Some(AtWalls::Reflect)) => format!(", {} were thrown back at walls", percent(share)),
+        _ => String::new(),
+    };
+    Some(format!("{still} of the steps stood still{met}"))
 }
 
 fn interval(estimate: &Estimate) -> String {

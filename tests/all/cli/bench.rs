@@ -182,7 +182,7 @@ fn bad_usage_is_told_with_what_would_do() {
     for step in ["0", "-1", "nan", "inf", "1e-320", "1e30", "x"] {
         folder.refused(2, &format!("bench --step={step}"), &["--step", "a number from 1e-9 to 1e9"]);
     }
-    for option in ["--traces", "--steps", "--repeats", "--window"] {
+    for option in ["--count", "--steps", "--repeats", "--window"] {
         folder.refused(2, &format!("bench {option} 0"), &[option, "0"]);
     }
     folder.refused(2, "bench --engine auto", &["auto", "gpu", "cpu", "funnel", "note", "reference"]);

@@ -22,8 +22,9 @@ fn eval_alone_shows_the_example() {
     ] {
         assert!(shown.stdout.contains(part), "{part:?} is missing in\n{}", shown.stdout);
     }
-    // What was chosen, on one line: nobody asked for an engine.
-    assert!(shown.stderr.starts_with("engine: ") && shown.stderr.lines().count() == 1, "{}", shown.stderr);
+    // What was chosen, on one line: nobody asked for an engine. A slow machine tells how far it is.
+    let told = shown.stderr.lines().filter(|line| !line.starts_with("progress: "));
+    assert!(shown.stderr.starts_with("engine: ") && told.count() == 1, "{}", shown.stderr);
     assert!(folder.files().is_empty());
 }
 

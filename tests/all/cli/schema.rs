@@ -130,7 +130,7 @@ fn real_summaries_are_as_the_schema_says() {
         ),
         format!(
             "{rooms}anchor = {{ sample = 3 }}\n[walk]\nkind = \"waypoints\"\nstep = 0.5\nsteps = 90\nstart = \"visible\"\n\
-             [run]\ntraces = 60\nblock = 7\nstride = 3\nsimplify = 0.1\n[until]\nrelative_error = 0.5\n[tallies]\nmap = 0\n"
+             [run]\ntraces = 140\nblock = 7\nstride = 3\nsimplify = 0.1\n[until]\nrelative_error = 0.5\n[tallies]\nmap = 0\n"
         ),
         "[scene]\nfile = \"s.geojson\"\n[walk]\nkind = \"given\"\nfile = \"t.csv\"\n".to_owned(),
         format!(
