@@ -135,7 +135,8 @@ fn walks_that_cannot_move_are_refused_with_the_numbers() {
         for at_walls in ["redraw", "reject", "reflect"] {
             study(kind, "50.0", &format!("at_walls = \"{at_walls}\""));
             for run in ["study run s.toml --out no", "study run s.toml --dry-run"] {
-                let parts = ["all walks stand still", "none of the 100 steps of the first 5 traces", "(1.5, 1.5)", "than 50"];
+                let parts =
+                    ["all walks stand still", "none of the 100 steps of the first 5 traces", "(1.5, 1.5)", "than 50"];
                 folder.refused(2, run, &parts);
             }
             assert!(!folder.path("no").exists());
