@@ -27,6 +27,7 @@ use crate::geometry::{CoordinateFault, check_point};
 
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};
+pub use movingai::GridMap;
 pub use object::{Inside, Object, Wall};
 pub use read::{SceneOptions, Unknown, read_scene, read_scene_with};
 pub(crate) use sectors::{Sectors, by_angle};

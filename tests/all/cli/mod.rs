@@ -8,6 +8,7 @@ mod engines;
 mod extremes;
 mod newcomer;
 mod process;
+mod queries;
 mod reports;
 mod results;
 mod scenes;
