@@ -19,7 +19,10 @@ impl Flattened {
     pub(super) fn note(&self) -> Option<String> {
         let Flattened { curves, tolerance, .. } = self;
         (*curves > 0).then(|| {
-            format!("walls lie within {tolerance} of the curves that they stand for (--flatten); curves: {curves}")
+            format!(
+                "walls lie within {tolerance} of the curves that they stand for (--flatten), and contacts there depend on it; \
+                 curves: {curves}"
+            )
         })
     }
 

@@ -169,7 +169,8 @@ impl Scene {
     }
 
     /// Whether y points down when the scene is looked at as its file means it: pictures show it so. Nothing is computed
-    /// otherwise for it; left and right are those of a reader for whom y points up.
+    /// otherwise for it, but what is written for others names left, right and clockwise as the picture shows them
+    /// ([`Side::shown`](crate::rope::Side::shown)).
     pub fn y_down(&self) -> bool {
         self.y_down
     }

@@ -24,6 +24,7 @@ mod scenes;
 mod shader;
 mod shown;
 mod simplify;
+mod simulated_again;
 mod stride;
 mod study_truth;
 mod support;

@@ -30,7 +30,9 @@ fn a_flat_bow_is_as_large_as_it_is_seen() {
         [("bow.svg", 2), ("bow_ref.svg", 1), ("bow_arc.dxf", 2), ("bow_min.dxf", 2), ("bow_ref.dxf", 1)]
     {
         let room = scene(name);
-        let note = format!("walls lie within 0.005 of the curves that they stand for (--flatten); curves: {curves}");
+        let note = format!(
+            "walls lie within 0.005 of the curves that they stand for (--flatten), and contacts there depend on it; curves: {curves}"
+        );
         // Alone, the arc and the pillar reach from 0 to 10.
         assert!(says(&room, &note), "{name}: {:?}", room.notes());
         let centre = DVec2::new(7.0, 3.0);
