@@ -111,7 +111,8 @@ fn survival(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<
 fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<Obstacle> {
     let traces = counts.traces.sum;
     let obstacle = |(&vertex, wound): (&u32, &super::tally::Wound)| {
-        let walls = setting.obstacles.get(vertex).map_or(0, |o| o.walls);
+        let known = setting.obstacles.get(vertex);
+        let walls = known.map_or(0, |o| o.walls);
         let n = traces as f64;
         let mean = wound.turns as f64 / n;
         let spread = (wound.squares as f64 - n * mean * mean).max(0.0);
@@ -119,6 +120,7 @@ fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec
         Obstacle {
             vertex,
             at: setting.models[0].vertices()[vertex as usize].into(),
+            label: known.and_then(|o| label(setting, o.named)),
             walls,
             wound: confidence.share(wound.left + wound.right, traces),
             left: confidence.share(wound.left, traces),
@@ -129,6 +131,11 @@ fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec
     let mut all: Vec<Obstacle> = counts.wound.iter().map(obstacle).collect();
     all.sort_by(|a, b| b.wound.value.total_cmp(&a.wound.value).then(a.vertex.cmp(&b.vertex)));
     all
+}
+
+/// What the scene's file calls the thing to which a wall end belongs.
+fn label(setting: &Setting, vertex: u32) -> Option<String> {
+    setting.labels.get(vertex as usize).cloned().flatten()
 }
 
 fn ropes(confidence: &Confidence, setting: &Setting, counts: &Counts, most: usize) -> Vec<CommonRope> {
@@ -146,6 +153,10 @@ fn ropes(confidence: &Confidence, setting: &Setting, counts: &Counts, most: usiz
             anchor: setting.models[*anchor as usize].anchor().into(),
             wraps: contacts.iter().map(|c| vertices[*c as usize / 2].into()).collect(),
             sides: contacts.iter().map(|c| side(c).name().to_owned()).collect(),
+            labels: match setting.labels.is_empty() {
+                true => Vec::new(),
+                false => contacts.iter().map(|c| label(setting, *c / 2)).collect(),
+            },
         }
     };
     counts.ropes.top(most).into_iter().map(rope).collect()
@@ -162,6 +173,7 @@ fn contacts(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<
         Contact {
             vertex,
             at: setting.models[0].vertices()[vertex as usize].into(),
+            label: label(setting, vertex),
             wraps: confidence.around(wraps, wraps_error, blocks),
             share: confidence.around(share, share_error, blocks),
         }

@@ -160,6 +160,9 @@ pub struct Obstacle {
     pub vertex: u32,
     /// Where that wall end is.
     pub at: [f64; 2],
+    /// What the scene's file calls it: the label of that wall end, or of the first of its wall ends that has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// How many walls it has.
     pub walls: u32,
     /// The share of ropes that go about it at least once at the end, all the way round.
@@ -187,15 +190,21 @@ pub struct CommonRope {
     pub wraps: Vec<[f64; 2]>,
     /// On which side the wall ends lie there: `left` or `right`.
     pub sides: Vec<String>,
+    /// What the scene's file calls the things there; left out where it calls nothing anything.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub labels: Vec<Option<String>>,
 }
 
 /// How often ropes touched a wall end.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// Its number in the scene.
     pub vertex: u32,
     /// Where it is.
     pub at: [f64; 2],
+    /// What the scene's file calls the thing to which it belongs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// The number of wraps about it per trace.
     pub wraps: Estimate,
     /// The share of all steps after which the rope touches it. (A rope that touches it twice counts twice.)

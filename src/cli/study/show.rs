@@ -107,6 +107,7 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     }
     for obstacle in summary.obstacles.iter().take(5) {
         let at = format!("({}, {})", short(obstacle.at[0]), short(obstacle.at[1]));
+        let at = obstacle.label.as_ref().map_or(at.clone(), |label| format!("{label} {at}"));
         line(format_args!("  {at:24}  {:>7}  {}", percent(obstacle.wound.value), shares(&obstacle.wound)));
     }
     if !summary.ropes.is_empty() {
@@ -118,7 +119,9 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
             1 => "1 contact".to_owned(),
             n => format!("{n} contacts"),
         };
-        line(format_args!("  {turns:24}  {:>7}  {}", percent(rope.share.value), shares(&rope.share)));
+        let names: Vec<&str> = rope.labels.iter().flatten().map(String::as_str).collect();
+        let names = if names.is_empty() { String::new() } else { format!("  round {}", names.join(", ")) };
+        line(format_args!("  {turns:24}  {:>7}  {}{names}", percent(rope.share.value), shares(&rope.share)));
     }
     text
 }

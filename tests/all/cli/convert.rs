@@ -85,6 +85,11 @@ fn check_lists_what_a_reader_has_to_say() {
         ("a.dxf", "0\nSECTION\n0\nENDSEC\n0\nEOF\n", "or put a POINT on a layer called anchor"),
     ] {
         folder.write(name, text);
-        folder.refused(2, &format!("check --scene {name}"), &[&format!("{name}: no anchor; give --anchor X,Y, {how}")]);
+        let shown = folder.done(&format!("check --scene {name}")).stdout;
+        let expected = format!("no anchor\n        to tie a rope, give --anchor X,Y, {how}\n");
+        assert!(shown.contains(&expected), "{shown}");
+        folder.write("t.csv", "trace,x,y\n0,1,1\n");
+        let eval = format!("eval --scene {name} --traces t.csv");
+        folder.refused(2, &eval, &[&format!("{name}: no anchor; give --anchor X,Y, {how}")]);
     }
 }
