@@ -16,6 +16,7 @@ mod object;
 mod pen;
 mod read;
 mod ros_map;
+mod sectors;
 mod svg;
 mod wkt;
 
@@ -29,6 +30,7 @@ pub use index::WallIndex;
 pub use model::{AnchorError, Model};
 pub use object::{Inside, Object, Wall};
 pub use read::{Ros, SceneOptions, Unknown, read_scene, read_scene_with};
+pub(crate) use sectors::{Sectors, by_angle};
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.
 ///

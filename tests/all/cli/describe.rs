@@ -116,7 +116,8 @@ fn layers_are_chosen_wherever_a_scene_is_read() {
         assert_eq!(walls(options), expected, "{options}");
     }
     let refused = |args: &str| {
-        let parts = ["hall.geojson: no layer \"pillar\"; did you mean \"pillars\"? the layers are \"pillars\", \"walls\""];
+        let parts =
+            ["hall.geojson: no layer \"pillar\"; did you mean \"pillars\"? the layers are \"pillars\", \"walls\""];
         folder.refused(2, args, &parts);
     };
     refused("check --scene hall.geojson --layer pillar");
@@ -125,9 +126,17 @@ fn layers_are_chosen_wherever_a_scene_is_read() {
     refused("bench --scene hall.geojson --layer pillar");
     refused("tradeoff --scene hall.geojson --layer pillar");
     refused("draw --scene hall.geojson --layer pillar --out h.svg");
-    folder.refused(2, "check --scene hall.geojson --layer kind=x", &["no layer \"kind=x\"", "\"kind=inner\", \"kind=outer\""]);
+    folder.refused(
+        2,
+        "check --scene hall.geojson --layer kind=x",
+        &["no layer \"kind=x\"", "\"kind=inner\", \"kind=outer\""],
+    );
     folder.write("m.map", "type octile\nheight 1\nwidth 2\nmap\n.@\n");
-    folder.refused(2, "check --scene m.map --layer walls", &["m.map: no layer \"walls\": nothing in this file lies in a layer"]);
+    folder.refused(
+        2,
+        "check --scene m.map --layer walls",
+        &["m.map: no layer \"walls\": nothing in this file lies in a layer"],
+    );
 
     let study = "[scene]\nfile = \"hall.geojson\"\nlayers = [\"pillars\", \"walls\"]\nwithout_layers = [\"walls\"]\n\
         [walk]\nkind = \"uniform\"\nstep = 1.0\nsteps = 20\n[run]\ntraces = 20\nblock = 10\n";
@@ -179,7 +188,10 @@ fn anchors_where_they_were_hardly_meant_to_be_are_told_of() {
     assert_eq!(warning("check --scene hall.geojson --anchor 5,5"), inside);
     let far = "hall.geojson: the anchor (500, 5) lies far outside of the walls: 480 away from the box round them, which is 20 by 10";
     assert_eq!(warning("check --scene hall.geojson --anchor 500,5"), far);
-    folder.write("pocket.wkt", "LINESTRING (0 0, 9 0, 9 9, 0 9, 0 0)\nLINESTRING (1 1, 2 1, 2 2, 1 2, 1 1)\nPOINT (1.5 1.5)");
+    folder.write(
+        "pocket.wkt",
+        "LINESTRING (0 0, 9 0, 9 9, 0 9, 0 0)\nLINESTRING (1 1, 2 1, 2 2, 1 2, 1 1)\nPOINT (1.5 1.5)",
+    );
     folder.write("p.csv", "trace,x,y\n0,1.5,1.5\n0,1.2,1.5\n");
     let pocket = "pocket.wkt: the anchor (1.5, 1.5) is closed in by walls: what can be reached from it is 1.23 % of the box round \
         all walls";
@@ -215,7 +227,8 @@ fn maps_are_those_of_nav2_or_of_ros_1() {
             let found = report(&folder, &format!("check --scene {name}.yaml --json {ros}"));
             assert_eq!(found["scene"]["walls"], walls, "{name} {ros}");
             let notes = found["scene"]["notes"].to_string();
-            let followed = if ros == "--ros 1" { "map_server of ROS 1 has it" } else { "nav2's map_server of ROS 2 has it" };
+            let followed =
+                if ros == "--ros 1" { "map_server of ROS 1 has it" } else { "nav2's map_server of ROS 2 has it" };
             assert!(notes.contains(followed), "{notes}");
             assert_eq!(notes.contains("none of the 80 cells counts as occupied, so there are no walls"), walls == 0);
         }
