@@ -5,16 +5,21 @@ use std::path::Path;
 use glam::DVec2;
 
 use super::columns::EventColumns;
+use super::labels::Labels;
 use super::rows::Rows;
 use super::{CHUNK, WholeFile, WriteError, text};
 use crate::rope::{Event, TraceRecord};
+use crate::scene::Scene;
 
 /// Writes the events of traces to a file that appears when it is finished.
 ///
 /// `.jsonl`, `.csv` and `.parquet` have the same columns: `trace`, `step`, `kind` (`wrap` or `unwrap`), `vertex` (the
 /// scene's number of it), `x`, `y` (where it stands), `side` (`left` or `right`). Memory is bounded; it does not grow
-/// with the number of events.
-pub struct EventWriter(Rows<EventColumns>);
+/// with the number of events. Where the scene's wall ends have labels, `label` follows: empty or null for one without.
+pub struct EventWriter {
+    rows: Rows<EventColumns>,
+    labels: Labels,
+}
 
 impl EventWriter {
     /// Starts the file at `path`, in the format that its extension names.
@@ -23,7 +28,22 @@ impl EventWriter {
     ///
     /// Those of [`check_output`](super::check_output).
     pub fn create(path: &Path) -> Result<Self, WriteError> {
-        Ok(EventWriter(Rows::create(path, text::EVENT_HEADER)?))
+        let rows = Rows::create(path, text::EVENT_HEADER, EventColumns::default())?;
+        Ok(EventWriter { rows, labels: Labels::default() })
+    }
+
+    /// The same with the labels of the wall ends of `scene`, the one as ropes see it, if it has some. O(walls).
+    ///
+    /// # Errors
+    ///
+    /// As [`create`](Self::create).
+    pub fn create_labelled(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
+        let labels = Labels::of(scene);
+        let header = match labels.is_empty() {
+            true => text::EVENT_HEADER.to_owned(),
+            false => format!("{},label", text::EVENT_HEADER),
+        };
+        Ok(EventWriter { rows: Rows::create(path, &header, EventColumns::labelled(&labels))?, labels })
     }
 
     /// Adds the events of one trace; `vertices` are the scene's.
@@ -51,13 +71,14 @@ impl EventWriter {
     /// If an event names a vertex that is not there.
     pub fn write_all(&mut self, vertices: &[DVec2], records: &[TraceRecord]) -> Result<(), WriteError> {
         let at = |event: &Event| vertices[event.vertex as usize];
-        self.0.write_all(
+        let labels = &self.labels;
+        self.rows.write_all(
             records,
-            |text, r| r.events.iter().try_for_each(|e| text::event_json(text, r.trace, e, at(e))),
-            |text, r| r.events.iter().try_for_each(|e| text::event_csv(text, r.trace, e, at(e))),
+            |text, r| r.events.iter().try_for_each(|e| text::event_json(text, r.trace, e, at(e), labels)),
+            |text, r| r.events.iter().try_for_each(|e| text::event_csv(text, r.trace, e, at(e), labels)),
             |table, r| {
                 r.events.iter().try_for_each(|e| {
-                    table.columns.push(r.trace, e, at(e));
+                    table.columns.push(r.trace, e, at(e), labels.get(e.vertex));
                     table.flush_if_full()
                 })
             },
@@ -67,7 +88,7 @@ impl EventWriter {
     /// Notes something about the events, where they come from say, in the metadata of a Parquet file; the other formats have
     /// no place for it.
     pub fn note(&mut self, key: &str, value: &str) {
-        self.0.note(key, value);
+        self.rows.note(key, value);
     }
 
     /// Puts the file in its place.
@@ -86,7 +107,7 @@ impl EventWriter {
     ///
     /// What the operating system says, or that an earlier write failed.
     pub fn complete(self) -> Result<WholeFile, WriteError> {
-        self.0.complete()
+        self.rows.complete()
     }
 }
 
@@ -107,8 +128,12 @@ pub fn write_events(path: &Path, vertices: &[DVec2], records: &[TraceRecord]) ->
 
 #[cfg(test)]
 mod tests {
+    use arrow_array::cast::AsArray;
+    use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+
     use super::*;
     use crate::rope::{EventKind, Side, Status};
+    use crate::scene::{Object, Wall};
 
     #[test]
     fn rows_have_the_documented_form() {
@@ -142,5 +167,44 @@ mod tests {
         assert_eq!(written("e.jsonl"), lines);
         let rows = "3,12,wrap,1,1.0,2.0,left\n3,40,unwrap,0,0.1,-3e-7,right\n";
         assert_eq!(written("e.csv"), format!("trace,step,kind,vertex,x,y,side\n{rows}"));
+    }
+
+    #[test]
+    fn wall_ends_that_have_names_are_named() {
+        let object = |label: &str| Object { label: Some(label.to_owned()), ..Object::default() };
+        let wall = |x: f64, object| Wall { ends: [[x, 0.0].into(), [x, 1.0].into()], object, reversed: false };
+        let objects = vec![object("door, left"), Object::default()];
+        let scene = Scene::of(objects, [wall(0.0, 0), wall(1.0, 1)]).unwrap();
+        let event = |vertex| Event { step: 1, kind: EventKind::Wrap, vertex, side: Side::Left };
+        let record = TraceRecord {
+            trace: 3,
+            status: Status::Ok,
+            steps: 1,
+            length: 1.0,
+            max_length: 1.0,
+            depth: 0,
+            max_depth: 0,
+            wraps: Vec::new(),
+            pull: None,
+            events: vec![event(0), event(2)],
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let written = |name: &str| {
+            let path = folder.path().join(name);
+            let mut writer = EventWriter::create_labelled(&path, &scene).unwrap();
+            writer.write(scene.vertices(), &record).unwrap();
+            writer.finish().unwrap();
+            std::fs::read_to_string(path).unwrap_or_default()
+        };
+        let rows = "3,1,wrap,0,0.0,0.0,left,\"door, left\"\n3,1,wrap,2,1.0,0.0,left,\n";
+        assert_eq!(written("e.csv"), format!("trace,step,kind,vertex,x,y,side,label\n{rows}"));
+        let json = written("e.jsonl");
+        let ends: Vec<&str> = json.lines().map(|line| line.split_once("\"side\":").unwrap().1).collect();
+        assert_eq!(ends, [r#""left","label":"door, left"}"#, r#""left","label":null}"#]);
+        written("e.parquet");
+        let file = std::fs::File::open(folder.path().join("e.parquet")).unwrap();
+        let batch = ParquetRecordBatchReaderBuilder::try_new(file).unwrap().build().unwrap().next().unwrap().unwrap();
+        let labels: Vec<_> = batch.column_by_name("label").unwrap().as_string::<i32>().iter().collect();
+        assert_eq!(labels, [Some("door, left"), None]);
     }
 }

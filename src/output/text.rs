@@ -1,13 +1,14 @@
 //! Rows as text: JSON lines and CSV.
 //!
 //! A number is written with the fewest digits that read back to the same f64, the same in both formats. CSV needs no
-//! quotes: no field holds a comma, a quote or a line end.
+//! quotes but for labels: no other field holds a comma, a quote or a line end.
 
 use std::io::{self, Write};
 
 use glam::DVec2;
 use serde::{Serialize, Serializer};
 
+use super::labels::{Labels, field};
 use crate::rope::{Event, Side, TraceRecord};
 
 pub(super) const RESULT_HEADER: &str =
@@ -31,6 +32,13 @@ struct ResultLine<'a> {
     #[serde(serialize_with = "sides")]
     sides: &'a [(DVec2, Side)],
     pull: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    labels: Option<Vec<Option<&'a str>>>,
+}
+
+/// What the wall ends are called at which the rope turns, where any have names.
+fn names<'a>(r: &TraceRecord, labels: &'a Labels) -> Option<Vec<Option<&'a str>>> {
+    (!labels.is_empty()).then(|| r.wraps.iter().map(|(at, _)| labels.at(*at)).collect())
 }
 
 fn positions<S: Serializer>(wraps: &&[(DVec2, Side)], serializer: S) -> Result<S::Ok, S::Error> {
@@ -43,7 +51,7 @@ fn sides<S: Serializer>(wraps: &&[(DVec2, Side)], serializer: S) -> Result<S::Ok
 
 /// An event as a JSON object; the fields' order is the keys'.
 #[derive(Serialize)]
-struct EventLine {
+struct EventLine<'a> {
     trace: u64,
     step: u32,
     kind: &'static str,
@@ -51,9 +59,12 @@ struct EventLine {
     x: f64,
     y: f64,
     side: &'static str,
+    /// Null where this wall end has none, left out where none has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    label: Option<Option<&'a str>>,
 }
 
-pub(super) fn result_json(out: &mut impl Write, r: &TraceRecord) -> io::Result<()> {
+pub(super) fn result_json(out: &mut impl Write, r: &TraceRecord, labels: &Labels) -> io::Result<()> {
     let line = ResultLine {
         trace: r.trace,
         status: r.status.name(),
@@ -66,12 +77,13 @@ pub(super) fn result_json(out: &mut impl Write, r: &TraceRecord) -> io::Result<(
         wraps: &r.wraps,
         sides: &r.wraps,
         pull: r.pull.map(|p| p.to_array()),
+        labels: names(r, labels),
     };
     serde_json::to_writer(&mut *out, &line)?;
     out.write_all(b"\n")
 }
 
-pub(super) fn result_csv(out: &mut impl Write, r: &TraceRecord) -> io::Result<()> {
+pub(super) fn result_csv(out: &mut impl Write, r: &TraceRecord, labels: &Labels) -> io::Result<()> {
     write!(out, "{},{},{},", r.trace, r.status.name(), r.steps)?;
     number(out, r.length)?;
     out.write_all(b",")?;
@@ -96,22 +108,33 @@ pub(super) fn result_csv(out: &mut impl Write, r: &TraceRecord) -> io::Result<()
     } else {
         out.write_all(b",")?;
     }
+    if let Some(names) = names(r, labels) {
+        out.write_all(b",")?;
+        // A label may hold whatever a list of them could be parted by.
+        field(out, &serde_json::to_string(&names)?)?;
+    }
     out.write_all(b"\n")
 }
 
-pub(super) fn event_json(out: &mut impl Write, trace: u64, e: &Event, at: DVec2) -> io::Result<()> {
+pub(super) fn event_json(out: &mut impl Write, trace: u64, e: &Event, at: DVec2, labels: &Labels) -> io::Result<()> {
     let Event { step, kind, vertex, side } = *e;
-    let line = EventLine { trace, step, kind: kind.name(), vertex, x: at.x, y: at.y, side: side.name() };
+    let label = (!labels.is_empty()).then(|| labels.get(vertex));
+    let line = EventLine { trace, step, kind: kind.name(), vertex, x: at.x, y: at.y, side: side.name(), label };
     serde_json::to_writer(&mut *out, &line)?;
     out.write_all(b"\n")
 }
 
-pub(super) fn event_csv(out: &mut impl Write, trace: u64, e: &Event, at: DVec2) -> io::Result<()> {
+pub(super) fn event_csv(out: &mut impl Write, trace: u64, e: &Event, at: DVec2, labels: &Labels) -> io::Result<()> {
     write!(out, "{trace},{},{},{},", e.step, e.kind.name(), e.vertex)?;
     number(out, at.x)?;
     out.write_all(b",")?;
     number(out, at.y)?;
-    writeln!(out, ",{}", e.side.name())
+    write!(out, ",{}", e.side.name())?;
+    if !labels.is_empty() {
+        out.write_all(b",")?;
+        field(out, labels.get(e.vertex).unwrap_or_default())?;
+    }
+    out.write_all(b"\n")
 }
 
 pub(super) fn number(out: &mut impl Write, x: f64) -> io::Result<()> {

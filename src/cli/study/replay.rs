@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use tautline::engine::{Engine, FastGpu, Job, Precision, Reference};
 use tautline::gpu::{AdapterChoice, Device};
-use tautline::output::{check_output, write_events};
+use tautline::output::{EventWriter, check_output};
 use tautline::picture::Drawing;
 
 use super::folder::{BaseArgs, Folder};
@@ -68,7 +68,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         write(target, &Drawing::new(model).with(&trace, &record), &args.look)?;
     }
     if let Some(path) = &args.events {
-        write_events(path, model.vertices(), std::slice::from_ref(&record))?;
+        let mut events = EventWriter::create_labelled(path, model.scene())?;
+        events.write(model.vertices(), &record)?;
+        events.finish()?;
     }
     print(&format!(
         "trace {}: {} steps, {} events, length {} at the end, {} at the most, {} contacts\n",

@@ -156,6 +156,13 @@ fn things_keep_their_names() {
     let shown = folder.done(eval).stdout;
     let expected = format!("  {:50}{:>12}\n  {:50}{:>12}\n", "touched by ropes at the end", "traces", "pillar 3", 1);
     assert!(shown.contains(&expected), "{shown}");
+    folder.done(&format!("{eval} --out r.jsonl --events e.csv"));
+    assert!(folder.text("r.jsonl").contains("\"labels\":[\"pillar 3\""), "{}", folder.text("r.jsonl"));
+    let events = folder.text("e.csv");
+    assert!(
+        events.starts_with("trace,step,kind,vertex,x,y,side,label\n") && events.contains(",left,pillar 3\n"),
+        "{events}"
+    );
     assert_eq!(report(&folder, &format!("{eval} --json"))["touched"], json!([{"label": "pillar 3", "traces": 1}]));
 
     folder.write(
