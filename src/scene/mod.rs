@@ -28,6 +28,7 @@ use crate::geometry::{CoordinateFault, check_point};
 
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};
+pub(crate) use object::MEMBER;
 pub use object::{Inside, Object, Wall};
 pub use read::{Ros, SceneOptions, Unknown, read_scene, read_scene_with};
 pub(crate) use sectors::{Sectors, by_angle};
@@ -206,6 +207,16 @@ impl Scene {
         });
         let Scene { vertices, walls, objects, drawn, .. } = Scene::of(objects, kept).expect("its vertices are sound");
         Scene { vertices, walls, objects, drawn, notes: self.notes.clone(), ..*self }
+    }
+
+    /// Whether the outline of wall `wall`'s object goes from its second end to its first.
+    pub(crate) fn is_reversed(&self, wall: usize) -> bool {
+        self.drawn[wall].1
+    }
+
+    /// Whether all walls are thin, in no layer and without labels.
+    pub fn is_bare(&self) -> bool {
+        (0..self.walls.len()).all(|wall| self.objects[self.object_of(wall)] == Object::default())
     }
 
     /// The endpoints of wall `wall`, in the direction of its object's outline.

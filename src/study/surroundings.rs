@@ -11,11 +11,15 @@ use crate::visibility::Visibility;
 /// plan has more, unless its doors are drawn closed.
 const POCKET: f64 = 0.1;
 
+/// How many walls a scene has at most in which pockets are looked for: more take seconds.
+const WALLS: usize = 1 << 17;
+
 /// What is to be said of the model's anchor: that it lies inside of something solid, in a small pocket that walls close, or
 /// far outside of all walls, farther from the box round them than that is long and wide together. Sentences without a full
 /// stop; none for most anchors. O(n log n).
 ///
-/// Nothing is said of pockets where walls cannot be triangulated, or where they cross at a point that no f64 names.
+/// Nothing is said of pockets where walls cannot be triangulated, where they cross at a point that no f64 names, and of more
+/// than 131,072 walls.
 ///
 /// ```
 /// use tautline::scene::{Model, Scene};
@@ -63,6 +67,9 @@ pub fn anchor_warnings(model: &Model) -> Vec<String> {
 
 /// The share of a box round all walls that can be reached from the anchor, if walls close that in.
 fn pocket(model: &Model, (low, high): (DVec2, DVec2)) -> Option<f64> {
+    if model.scene().walls().len() > WALLS {
+        return None;
+    }
     let visibility = Visibility::new(model)?;
     let reached = visibility.reached(model.vertices().len() as u32);
     // The mesh goes on far outside.

@@ -5,15 +5,16 @@ mod properties;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, JsonValue, Position};
 use glam::DVec2;
 
 use super::lines::Lines;
-use super::{Object, Scene, geographic};
+use super::{Inside, Object, Scene, geographic};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
+use properties::Kept;
 
 /// Reads a FeatureCollection, a Feature or a bare geometry.
 ///
@@ -79,6 +80,11 @@ struct Found<'a> {
     nulls: usize,
     points: usize,
     notes: Vec<String>,
+    /// Where the feature at hand is a part of an object that several features may share: its number and the outline's
+    /// direction.
+    part: Option<(u32, bool)>,
+    /// Which object is that of each number in the file.
+    shared: HashMap<u64, u32>,
 }
 
 impl Found<'_> {
@@ -86,6 +92,14 @@ impl Found<'_> {
         let place = Place::default().then("feature", number);
         let is_anchor = feature.property("role").and_then(JsonValue::as_str) == Some("anchor");
         self.object = properties::object(feature, &self.keys);
+        self.part = properties::kept(feature, &self.object).map(|Kept { number, reversed, object }| {
+            let lines = &mut self.lines;
+            let number = *self.shared.entry(number).or_insert_with(|| {
+                lines.begin(object);
+                lines.object()
+            });
+            (number, reversed)
+        });
         match &feature.geometry {
             None => self.nulls += 1,
             Some(geometry) => {
@@ -146,7 +160,10 @@ impl Found<'_> {
 
     /// Adds the walls of one line string.
     fn line(&mut self, positions: &[Position], place: &Place) -> Result<(), Fault> {
-        self.lines.begin(self.object.clone());
+        match self.part {
+            Some((object, reversed)) => self.lines.resume(object, reversed),
+            None => self.lines.begin(self.object.clone()),
+        }
         self.lines.push_line(positions.iter().map(point_of), place)
     }
 
