@@ -38,7 +38,7 @@ fn labels_layers_and_what_is_solid_are_kept() {
             [[[[0,0],[4,0],[0,4],[0,0]],[[1,1],[2,1],[1,2],[1,1]]],[[[9,9],[8,9],[9,8],[9,9]]]]}},
         {"type":"Feature","properties":{"layer":"b"},"geometry":{"type":"LineString","coordinates":[[9,9],[20,1]]}}]}"#,
     );
-    for (from, walls) in [("m.map", 12), ("p.json", 10)] {
+    for (from, walls) in [("m.map", 8), ("p.json", 10)] {
         folder.done(&format!("convert {from} a.geojson"));
         folder.done("convert a.geojson b.geojson");
         let [first, second, third] =
