@@ -38,6 +38,7 @@ pub mod geometry;
 pub mod gpu;
 pub mod output;
 pub mod picture;
+pub mod queries;
 mod read_error;
 pub mod report;
 pub mod rope;

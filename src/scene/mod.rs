@@ -28,6 +28,7 @@ use crate::geometry::{CoordinateFault, check_point};
 
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};
+pub use movingai::GridMap;
 pub(crate) use object::MEMBER;
 pub use object::{Inside, Object, Wall};
 pub use read::{Ros, SceneOptions, Unknown, read_scene, read_scene_with};

@@ -8,6 +8,7 @@ mod draw;
 mod engines;
 mod extremes;
 mod process;
+mod queries;
 mod reports;
 mod results;
 mod scenes;
