@@ -49,5 +49,12 @@ fn fault(e: &serde_json::Error, feature: Option<usize>) -> Fault {
     };
     let message = message.strip_suffix(&suffix).unwrap_or(&message);
     let message = message.strip_prefix("Error while deserializing GeoJSON: ").unwrap_or(message);
-    Fault::new(place, format!("not GeoJSON: {message}"))
+    // An empty list in place of a polygon says nothing of how deep it is.
+    let right = match message.contains("coordinates dimensions") {
+        true => {
+            "; its coordinates must be nested as deep as its type says, and none may be an empty list in place of a polygon"
+        }
+        false => "",
+    };
+    Fault::new(place, format!("not GeoJSON: {message}{right}"))
 }

@@ -159,6 +159,7 @@ fn a_feature_that_is_none_is_named() {
     let empty = geometry("MultiPolygon", "[[]]");
     let what = fault(&features(&[&line, &geometry("LinearRing", "[[0,0],[1,1]]"), &empty]));
     assert!(what.starts_with("feature 2: not GeoJSON: ") && what.contains("MultiPolygon"), "{what}");
+    assert!(what.ends_with("none may be an empty list in place of a polygon"), "{what}");
     for wrong in [geometry("Curve", "[]"), geometry("Point", "[]"), geometry("LineString", "3"), "{}".into()] {
         let what = fault(&features(&[&line, &wrong, &line]));
         assert!(what.starts_with("feature 1: not GeoJSON: "), "{what}");
