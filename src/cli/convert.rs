@@ -30,6 +30,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     interrupt::check()?;
     write_scene(&args.to, &scene)?;
     writing.end()?;
+    let is_text = args.to.extension().is_some_and(|e| e.eq_ignore_ascii_case("wkt"));
+    if is_text && !scene.is_bare() {
+        eprintln!(
+            "note: {}: well-known text has no place for labels, layers and what is solid; GeoJSON has",
+            args.to.display()
+        );
+    }
     let anchor = scene.anchor().map_or("no anchor".to_owned(), |a| format!("anchor ({}, {})", a.x, a.y));
     print(&format!(
         "{}: {} walls, {} vertices, {anchor}\n",

@@ -72,6 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.trade.is_any() {
         summary.trade(args.trade, model);
     }
+    summary.label(model);
     let mut times = evaluate(args, model, batches, &mut *engine, &mut summary)?;
     summary.learn(&*engine);
     times.total = start.elapsed();
@@ -101,7 +102,7 @@ fn evaluate(
             let start = Instant::now();
             let records = engine.evaluate(&settled, &job)?;
             times.evaluated += start.elapsed();
-            summary.add(&settled, &records);
+            summary.add(model, &settled, &records);
             output.write(records)?;
         }
         violations.finish();

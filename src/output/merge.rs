@@ -25,7 +25,7 @@ const ROWS: usize = 1 << 13;
 /// A file that cannot be read or whose columns are others, a trace that is there twice, more or fewer `rows`, and those of
 /// [`check_output`](super::check_output).
 pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)], rows: u64) -> Result<(), WriteError> {
-    let mut table = Table::<ResultColumns>::new(to, WholeFile::create(to)?)?;
+    let mut table = Table::new(to, WholeFile::create(to)?, ResultColumns::default())?;
     notes.iter().for_each(|(key, value)| table.note(key, value));
     // Files are opened when it is their turn, so that there may be more of them than can be open at a time.
     let mut waiting = Vec::new();

@@ -6,6 +6,7 @@
 
 mod columns;
 mod events;
+mod labels;
 mod merge;
 mod results;
 mod rows;

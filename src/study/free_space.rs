@@ -68,7 +68,11 @@ impl Region {
     }
 
     fn new(model: &Model, visibility: &Visibility, triangles: &[u32]) -> Option<Self> {
-        let (low, high) = model.bounds();
+        Region::within(model.bounds(), visibility, triangles)
+    }
+
+    /// What of these triangles lies within a box; `None` if it has no area.
+    pub(super) fn within((low, high): (DVec2, DVec2), visibility: &Visibility, triangles: &[u32]) -> Option<Self> {
         let (mut pieces, mut areas, mut sum) = (Vec::new(), Vec::new(), 0.0);
         for &triangle in triangles {
             let whole = visibility.triangle(triangle);
@@ -84,6 +88,12 @@ impl Region {
             }
         }
         (!pieces.is_empty()).then_some(Region { pieces, areas, low, high })
+    }
+
+    /// Its area.
+    pub(super) fn area(&self) -> f64 {
+        // Pieces have twice the area of their triangles.
+        self.areas.last().map_or(0.0, |twice| twice / 2.0)
     }
 
     /// A uniform point of those that are `fit`; `None` if 65,536 points in a row are not.

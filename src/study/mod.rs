@@ -10,6 +10,7 @@ mod run;
 mod state;
 mod summarize;
 mod summary;
+mod surroundings;
 mod tally;
 mod walk;
 
@@ -25,5 +26,6 @@ pub use summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Stopped, Summary, Survival,
     SurvivalPoint, Traded, quantity,
 };
+pub use surroundings::anchor_warnings;
 pub(crate) use tally::Moments;
 pub use walk::Walks;

@@ -14,7 +14,7 @@ use super::tally::Setting;
 use super::walk::Walks;
 use crate::example::BuiltIn;
 use crate::geometry::{Shown, number};
-use crate::scene::{AnchorError, Model, Scene, read_scene};
+use crate::scene::{AnchorError, Model, Scene, read_scene_with};
 use crate::simplify::simplify;
 use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
 
@@ -45,9 +45,8 @@ impl Study {
                 let built_in: BuiltIn = name.parse().map_err(|e| PlanError::new(format!("scene.built_in: {e}")))?;
                 built_in.scene(1)
             }
-            (None, Some(file)) => {
-                read_scene(&folder.join(file)).map_err(|e| PlanError::new(format!("scene.file: {e}")))?
-            }
+            (None, Some(file)) => read_scene_with(&folder.join(file), &plan.scene.options())
+                .map_err(|e| PlanError::new(format!("scene.file: {e}")))?,
             (None, None) => return Err(PlanError::new("scene: give `file` or `built_in`")),
         };
         let models = models(&plan, &scene)?;

@@ -130,6 +130,7 @@ fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec
         Some(Obstacle {
             vertex,
             at: known.middle.into(),
+            label: label(setting, known.named),
             walls: known.walls,
             wound: confidence.share(left + right, traces),
             left: confidence.share(left, traces),
@@ -140,6 +141,11 @@ fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec
     let mut all: Vec<Obstacle> = counts.wound.iter().filter_map(obstacle).collect();
     all.sort_by(|a, b| b.wound.value.total_cmp(&a.wound.value).then(a.vertex.cmp(&b.vertex)));
     all
+}
+
+/// What the scene's file calls the thing to which a wall end belongs.
+fn label(setting: &Setting, vertex: u32) -> Option<String> {
+    setting.labels.get(vertex as usize).cloned().flatten()
 }
 
 fn ropes(confidence: &Confidence, setting: &Setting, counts: &Counts, most: usize) -> Vec<CommonRope> {
@@ -157,6 +163,10 @@ fn ropes(confidence: &Confidence, setting: &Setting, counts: &Counts, most: usiz
             anchor: setting.models[*anchor as usize].anchor().into(),
             wraps: contacts.iter().map(|c| vertices[*c as usize / 2].into()).collect(),
             sides: contacts.iter().map(|c| side(c).name().to_owned()).collect(),
+            labels: match setting.labels.is_empty() {
+                true => Vec::new(),
+                false => contacts.iter().map(|c| label(setting, *c / 2)).collect(),
+            },
         }
     };
     counts.ropes.top(most).into_iter().map(rope).collect()
@@ -173,6 +183,7 @@ fn contacts(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<
         Contact {
             vertex,
             at: setting.models[0].vertices()[vertex as usize].into(),
+            label: label(setting, vertex),
             wraps: confidence.around(wraps, wraps_error, blocks),
             share: confidence.around(share, share_error, blocks),
         }

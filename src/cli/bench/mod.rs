@@ -14,7 +14,7 @@ use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured,
 
 use super::engine::named;
 use super::failure::Failure;
-use super::input::point;
+use super::input::{FileArgs, point};
 use super::progress::Runs;
 use super::{interrupt, named_scene, print, print_json};
 
@@ -26,6 +26,8 @@ pub(crate) struct Args {
     /// Where the rope is tied in a scene file; overrides what the file says
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     anchor: Option<DVec2>,
+    #[command(flatten)]
+    file: FileArgs,
     /// The length of a step, about, in the scene's unit [default: 0.01 in random-M, 0.1 in lattice-M, 0.25 in rooms, a
     /// tenth of the mean distance between walls in files]
     #[arg(long, value_name = "LENGTH", value_parser = length)]
@@ -156,7 +158,7 @@ fn failure(error: BenchError) -> Failure {
 
 impl Args {
     fn setting(&self) -> Result<Setting, Failure> {
-        let scene = named_scene::open(&self.scene, self.anchor)?;
+        let scene = named_scene::open(&self.scene, self.anchor, &self.file)?;
         Ok(Setting {
             step: self.step.unwrap_or_else(|| scene.step()),
             scene,

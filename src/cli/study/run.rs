@@ -16,7 +16,7 @@ use super::parts::Parts;
 use super::show;
 use crate::cli::engine::{EngineArgs, of_studies};
 use crate::cli::failure::Failure;
-use crate::cli::input::note;
+use crate::cli::input::{note, warn};
 use crate::cli::interrupt::{self, Writing};
 use crate::cli::progress::{Progress, with_progress};
 use crate::cli::summary::precision;
@@ -76,6 +76,9 @@ fn shard(text: &str) -> Result<Shard, String> {
     Shard::new(number?, of?).ok_or_else(wrong)
 }
 
+/// How many anchors are looked at for whether they stand where they were meant to.
+const WARNED: usize = 8;
+
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     interrupt::listen()?;
     let (mut plan, base) = match &args.file {
@@ -98,6 +101,8 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     study.check_moves()?;
     if let Some(file) = &study.plan().scene.file {
         note(file, study.models()[0].scene());
+        // Sampled anchors lie in the free space of the first one.
+        study.models().iter().take(WARNED).for_each(|model| warn(&file.display().to_string(), model));
     }
     if args.dry_run {
         return dry_run(&study, args);

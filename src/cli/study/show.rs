@@ -112,6 +112,7 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     }
     for obstacle in summary.obstacles.iter().take(5) {
         let at = format!("({}, {})", short(obstacle.at[0]), short(obstacle.at[1]));
+        let at = obstacle.label.as_ref().map_or(at.clone(), |label| format!("{label} {at}"));
         line(format_args!("  {at:24}  {:>7}  {}", percent(obstacle.wound.value), shares(&obstacle.wound)));
     }
     if !summary.ropes.is_empty() {
@@ -123,7 +124,9 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
             1 => "1 turn".to_owned(),
             n => format!("{n} turns"),
         };
-        line(format_args!("  {turns:24}  {:>7}  {}", percent(rope.share.value), shares(&rope.share)));
+        let names: Vec<&str> = rope.labels.iter().flatten().map(String::as_str).collect();
+        let names = if names.is_empty() { String::new() } else { format!("  round {}", names.join(", ")) };
+        line(format_args!("  {turns:24}  {:>7}  {}{names}", percent(rope.share.value), shares(&rope.share)));
     }
     text
 }

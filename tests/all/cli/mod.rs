@@ -3,6 +3,7 @@
 mod batches;
 mod bench;
 mod convert;
+mod describe;
 mod draw;
 mod engines;
 mod extremes;

@@ -108,8 +108,10 @@ fn check_counts_what_is_there() {
     let folder = Folder::hand_made();
     folder.write("z.geojson", r#"{"type": "LineString", "coordinates": [[0, 0], [0, 0], [1, 0]]}"#);
     folder.write("v.csv", "trace,x,y\n0,0,12\n0,5,12\n3,1,0\n3,5,0\n");
-    let scene =
-        json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0], "notes": []});
+    let scene = json!({
+        "name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "solid": 0, "box": [[3.0, -9.0], [6.0, 4.0]],
+        "unit": null, "y": "up", "layers": [], "labels": [], "anchor": [0.0, 0.0], "warnings": [], "notes": [],
+    });
     let mut violation = report(&folder, "check --scene s.geojson --json --traces v.csv --on-violation flag");
     let violation = violation["traces"]["violations"][0].take();
     for (key, value) in [("trace", json!(3)), ("step", json!(1)), ("kind", json!("crosses")), ("wall", json!(0))] {
