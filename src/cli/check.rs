@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::input::InputArgs;
 use super::summary::{counted, dropped};
 use super::trade::Terms;
-use super::{interrupt, print, print_json};
+use super::{print, print_json};
 
 /// How many traces are checked at a time.
 const TRACES: usize = 8192;
@@ -23,7 +23,6 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::listen()?;
     let terms = Terms::exact(args.input.model()?);
     let model = &terms.given;
     let scene = model.scene();

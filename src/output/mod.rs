@@ -7,6 +7,7 @@
 mod columns;
 mod events;
 mod merge;
+mod passing;
 mod results;
 mod rows;
 mod scene;
@@ -19,6 +20,7 @@ use std::path::Path;
 
 pub use events::{EventWriter, write_events};
 pub use merge::merge_results;
+pub use passing::{abandon, commit, remove_left_files};
 pub use results::{ResultWriter, write_results};
 pub use scene::write_scene;
 pub use whole_file::WholeFile;

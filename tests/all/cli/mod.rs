@@ -6,6 +6,7 @@ mod convert;
 mod draw;
 mod engines;
 mod extremes;
+mod faults;
 mod process;
 mod reports;
 mod results;
