@@ -34,10 +34,10 @@ built_in = "rooms"
 [walk]
 kind = "persistent"
 step = 0.4
-steps = 40
+steps = 10
 [run]
-traces = 3000
-block = 100
+traces = 20_000
+block = 500
 [outputs]
 traces = true
 pictures = false
@@ -54,6 +54,7 @@ merge=(study merge k0 k1 --out out)
 eval=(eval --scene "$plan" --traces t.csv --out out/r.csv --events out/e.parquet --engine cpu)
 
 mkdir truth-run clean-run clean-resume clean-merge clean-eval
+cp s.toml truth-run
 cp s.toml clean-run
 cp s.toml clean-resume
 mkdir clean-eval/out
@@ -69,14 +70,14 @@ cp -a clean-eval truth-eval
 (cd truth-eval && "$program" "${eval[@]}") >/dev/null 2>&1
 cmp truth-run/out/summary.json truth-merge/out/summary.json
 
-# A study stopped on the way, by a request to end at some call.
-for ((n = 40; ; n += 40)); do
+# A study stopped on the way, by a request to end while it locks a file of rows that is under way.
+for n in 3 4 5 6 7 8 none; do
+    [ "$n" != none ] || { say "no study could be stopped on the way"; exit 1; }
     rm -rf clean-resume/out
     code=0
-    (cd clean-resume && strace -f -qq -o /dev/null -e trace=all -e "inject=all:signal=TERM:when=$n" "$program" "${run[@]}") \
+    (cd clean-resume && strace -f -qq -o /dev/null -e trace=flock -e "inject=flock:signal=TERM:when=$n" "$program" "${run[@]}") \
         >/dev/null 2>&1 || code=$?
     [ "$code" -ne 4 ] || [ -z "$(ls -A clean-resume/out/traces)" ] || break
-    [ "$n" -lt 4000 ] || { say "no study could be stopped on the way"; exit 1; }
 done
 
 # The calls of the thread that makes the most of a kind, among which one is drawn.

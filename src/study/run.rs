@@ -85,6 +85,19 @@ pub fn run<E: Send>(
     engines: &mut [Box<dyn Engine + '_>],
     state: &Mutex<State>,
     job: &Job,
+    after: impl FnMut(&mut State, Vec<TraceRecord>, usize) -> Result<(), E>,
+) -> Result<Spent, RunError<E>> {
+    let size = group_size(study, engines);
+    in_groups(study, engines, state, job, size, after)
+}
+
+/// The same with groups of at most `size` traces.
+fn in_groups<E: Send>(
+    study: &Study,
+    engines: &mut [Box<dyn Engine + '_>],
+    state: &Mutex<State>,
+    job: &Job,
+    size: u64,
     mut after: impl FnMut(&mut State, Vec<TraceRecord>, usize) -> Result<(), E>,
 ) -> Result<Spent, RunError<E>> {
     let mut spent = Spent::default();
@@ -96,7 +109,8 @@ pub fn run<E: Send>(
         (state.shard, state.place(study), state.open.clone(), state.tallies.scalars())
     };
     let all = shard.count(study.plan().blocks());
-    groups(study, engines, shard, first..study.places(shard), job, |group, records, [waited, evaluated]| {
+    let places = first..study.places(shard);
+    groups(study, engines, (shard, places, size), job, |group, records, [waited, evaluated]| {
         let clock = Instant::now();
         let tallied = tally(study, shard, &group, &records, open.take());
         let mut state = state.lock().expect("nobody panicked with the state");
@@ -155,23 +169,22 @@ pub fn run_again<E: Send>(
     mut each: impl FnMut(Vec<TraceRecord>) -> Result<(), E>,
 ) -> Result<(), RunError<E>> {
     assert!(places.end <= study.places(shard), "the shard has that many traces");
-    groups(study, engines, shard, places, job, |_, records, _| {
+    let size = group_size(study, engines);
+    groups(study, engines, (shard, places, size), job, |_, records, _| {
         each(records).map_err(RunError::Caller).map(|()| Continue(()))
     })
 }
 
-/// Draws and evaluates the traces at these places, group after group, each group while the one before is given to `each`,
-/// with how many seconds were waited for it and how long evaluating took.
+/// Draws and evaluates the traces at these places, in groups of at most that size. The next group is drawn while one is evaluated
+/// and given to `each`, with how many seconds were waited for it and how long evaluating took.
 fn groups<E: Send>(
     study: &Study,
     engines: &mut [Box<dyn Engine + '_>],
-    shard: Shard,
-    places: Range<u64>,
+    (shard, places, size): (Shard, Range<u64>, u64),
     job: &Job,
     mut each: impl FnMut(Group, Vec<TraceRecord>, [f64; 2]) -> Result<ControlFlow<()>, RunError<E>>,
 ) -> Result<(), RunError<E>> {
     assert_eq!(engines.len(), study.models().len(), "each anchor has its engine");
-    let size = group_size(study, engines.iter().map(|e| e.batch()).max().unwrap_or(1));
     thread::scope(|scope| {
         let (ready, waiting) = sync_channel::<Result<Group, RunError<E>>>(0);
         scope.spawn(move || {
@@ -239,7 +252,8 @@ fn tally(
 }
 
 /// How many traces are worked on at once: enough for the engines, whole blocks if that can be, and not too many points.
-fn group_size(study: &Study, batch: usize) -> u64 {
+fn group_size(study: &Study, engines: &[Box<dyn Engine + '_>]) -> u64 {
+    let batch = engines.iter().map(|engine| engine.batch()).max().unwrap_or(1);
     let block = u64::from(study.plan().run.block);
     let steps = study.plan().walk.steps().map_or(1024, u64::from);
     let most = (POINTS / (steps + 1)).max(1);
@@ -330,3 +344,6 @@ fn stopped(study: &Study, longest: &Moments, is_last: bool) -> Stopped {
     }
     if is_last { Stopped::Complete } else { Stopped::Unfinished }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 //! A study under way, and how what is done of it is kept.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -21,8 +22,9 @@ pub(super) struct Keeper {
     pub(super) state: Mutex<State>,
     /// Locked only by who holds the state.
     rows: Mutex<Rows>,
-    /// How many blocks there are to do.
-    blocks: u64,
+    /// How many traces there are to do, and how many of them are done.
+    traces: u64,
+    done: AtomicU64,
 }
 
 struct Rows {
@@ -36,9 +38,9 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Keeper {
     pub(super) fn new(folder: Arc<Folder>, study: &Study, state: State, parts: Option<Parts>) -> Self {
-        let blocks = state.shard().count(study.plan().blocks());
+        let (traces, done) = (study.places(state.shard()), AtomicU64::new(state.place(study)));
         let rows = Rows { parts, saved: Instant::now() };
-        Keeper { folder, state: Mutex::new(state), rows: Mutex::new(rows), blocks }
+        Keeper { folder, state: Mutex::new(state), rows: Mutex::new(rows), traces, done }
     }
 
     /// The state as it is.
@@ -49,6 +51,7 @@ impl Keeper {
     /// Takes the rows of the traces from that at place `first` on, with which `state` is on hand. Saves it when it is time.
     pub(super) fn add(&self, state: &mut State, first: u64, records: &[TraceRecord]) -> Result<(), Failure> {
         self.folder.is_begun();
+        self.done.fetch_max(first + records.len() as u64, Ordering::SeqCst);
         let mut rows = locked(&self.rows);
         rows.parts.as_mut().map_or(Ok(()), |parts| parts.write(first, records))?;
         if rows.saved.elapsed() >= CHECKPOINT { self.save(state, &mut rows) } else { Ok(()) }
@@ -97,9 +100,9 @@ impl Keeper {
         if let Err(failure) = self.save(&mut state, &mut locked(&self.rows)) {
             return failure;
         }
-        let (done, all, shown) = (state.done(), self.blocks, self.folder.path().display());
+        let (done, all, shown) = (self.done.load(Ordering::SeqCst), self.traces, self.folder.path().display());
         let what = match state.stopped() {
-            Stopped::Unfinished => format!("{done} of {all} blocks are saved: go on"),
+            Stopped::Unfinished => format!("{done} of {all} traces are saved: go on"),
             _ => "all that was to be done is saved: have the answer written".to_owned(),
         };
         Failure::checkpoint(anyhow!("stopped; {what} with `tautline study resume {shown}`"))

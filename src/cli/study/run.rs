@@ -120,10 +120,9 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
 fn begin(folder: &Folder, study: &Study, base: &Path, part: Shard) -> Result<State, Failure> {
     let held = folder.held(study, part)?;
     if let Some(state) = &held {
-        let (shown, done) = (folder.path().display(), state.done());
-        let all = part.count(study.plan().blocks());
+        let (shown, done, all) = (folder.path().display(), state.place(study), study.places(part));
         match state.stopped() {
-            Stopped::Unfinished => eprintln!("note: {shown} holds {done} of {all} blocks of this study already"),
+            Stopped::Unfinished => eprintln!("note: {shown} holds {done} of {all} traces of this study already"),
             _ => eprintln!("note: {shown} holds the answer of this study already"),
         }
     }
@@ -135,6 +134,10 @@ fn begin(folder: &Folder, study: &Study, base: &Path, part: Shard) -> Result<Sta
 }
 
 pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
+    let shown = args.folder.display().to_string();
+    let guard = Guard::new(Last::Save(Box::new(move || {
+        Failure::checkpoint(anyhow!("stopped before it went on: do so with `tautline study resume {shown}`"))
+    })));
     let folder = Arc::new(Folder::go_on(&args.folder)?);
     let (study, _) = folder.study(&args.base)?;
     let state = folder.state_or_new(&study)?;
@@ -146,7 +149,6 @@ pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
         )));
     }
     let engines = Engines::open(&args.engine, &study)?;
-    let guard = Guard::new(Last::TakeBack(Box::new(|| {})));
     proceed(&folder, &guard, &study, state, engines, args.json)
 }
 
