@@ -152,7 +152,7 @@ impl State {
     /// How many of the shard's traces are evaluated: the first ones, those of a block that is not done included.
     pub fn place(&self, study: &Study) -> u64 {
         let whole = self.done.saturating_mul(study.plan().run.block.into()).min(study.places(self.shard));
-        whole + self.open.as_ref().map_or(0, Block::traces)
+        whole.saturating_add(self.open.as_ref().map_or(0, Block::traces))
     }
 
     /// How many traces the blocks have that are done.

@@ -3,6 +3,8 @@
 use std::fs::{File, Metadata, TryLockError};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use tautline::output::WriteError;
@@ -21,14 +23,14 @@ pub(super) struct Lock {
 }
 
 impl Lock {
-    /// Takes the lock of a folder, which is there. An error if another process has it.
+    /// Takes the lock of a folder, which is there. An error if another process has it, and still has it after a moment.
     pub(super) fn take(folder: &Path) -> Result<Self, Failure> {
         let path = folder.join(LOCK);
         let is_new = !path.exists();
         loop {
             let open = File::options().read(true).write(true).create(true).truncate(false).open(&path);
             let mut file = open.map_err(|cause| WriteError::Io { path: path.clone(), cause })?;
-            match file.try_lock() {
+            match patiently(|| file.try_lock()) {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(in_use(folder, &mut file)),
                 Err(TryLockError::Error(e)) => eprintln!(
@@ -50,7 +52,7 @@ impl Lock {
     /// been written to by a process with a lock.
     pub(super) fn share(folder: &Path) -> Result<Option<File>, Failure> {
         let Ok(mut file) = File::open(folder.join(LOCK)) else { return Ok(None) };
-        match file.try_lock_shared() {
+        match patiently(|| file.try_lock_shared()) {
             Err(TryLockError::WouldBlock) => Err(in_use(folder, &mut file)),
             Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
         }
@@ -61,6 +63,20 @@ impl Lock {
         match (self.file.metadata(), std::fs::metadata(&self.path)) {
             (Ok(own), Ok(there)) => is_same(&own, &there),
             _ => false,
+        }
+    }
+}
+
+/// How long a lock is waited for: a process that was killed may take a moment to be gone.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Tries until there is a lock, for a while.
+fn patiently(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockError> {
+    let start = Instant::now();
+    loop {
+        match lock() {
+            Err(TryLockError::WouldBlock) if start.elapsed() < PATIENCE => sleep(Duration::from_millis(20)),
+            ended => return ended,
         }
     }
 }
