@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::cells::{SIDE_MAX, borders};
+use super::cells::{self, SIDE_MAX, borders};
 use super::{Scene, excerpt};
 use crate::read_error::{Fault, Place};
 
@@ -14,7 +14,7 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     let grid = Grid::parse(text)?;
     let blocked = |x, y| grid.blocked(x, y);
     let walls = borders(grid.width, grid.height(), &blocked);
-    Ok(Scene::new(walls.map(|ends| ends.map(|[x, y]| DVec2::new(x as f64, y as f64))))?.with_y_down())
+    Ok(cells::scene(walls, |[x, y]| DVec2::new(x as f64, y as f64), false)?.with_y_down())
 }
 
 /// The cells: `rows[row][column]`, all rows `width` long, every character one that is known.
