@@ -307,7 +307,7 @@ fn difference(there: &Plan, here: &Plan) -> Option<String> {
                 let name = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
                 first(&name, a.get(key).unwrap_or(&null), b.get(key).unwrap_or(&null))
             };
-            return keys.filter(|key| name != "" || *key != "outputs").find_map(of);
+            return keys.filter(|key| !name.is_empty() || *key != "outputs").find_map(of);
         }
         (there != here).then(|| format!("{name} is {there} there and {here} here"))
     }

@@ -30,22 +30,23 @@ pub(super) struct Parts {
 
 impl Parts {
     /// Goes on where `state` does, of the study in `folder`, and tells which rows are to be computed again, by the places of their
-    /// traces: the state then does not count on the files in which they were. What it does not know is dropped. `None` if all rows
+    /// traces: the state then does not count on the files in which they were. What it does not know is dropped. No parts if all rows
     /// are in their place.
     pub(super) fn open(
         folder: &Folder,
         study: &Study,
         state: &mut State,
         notes: Vec<(&'static str, String)>,
-    ) -> Result<Option<(Self, Vec<Range<u64>>)>, Failure> {
+    ) -> Result<(Option<Self>, Vec<Range<u64>>), Failure> {
         let parts = folder.file(PARTS);
         let failed = |e: std::io::Error| Failure::internal(anyhow!("cannot write {}: {e}", parts.display()));
-        if let Some(sum) = state.kept.files.remove(TRACES) {
-            if state.stopped() != Stopped::Unfinished && is_whole(&folder.file(TRACES), &sum) {
-                state.kept.files.insert(TRACES.to_owned(), sum);
-                clear(folder)?;
-                return Ok(None);
-            }
+        if let Some(sum) = state.kept.files.remove(TRACES)
+            && state.stopped() != Stopped::Unfinished
+            && is_whole(&folder.file(TRACES), &sum)
+        {
+            state.kept.files.insert(TRACES.to_owned(), sum);
+            clear(folder)?;
+            return Ok((None, Vec::new()));
         }
         fs::create_dir_all(&parts).map_err(failed)?;
         let end = state.place(study);
@@ -69,7 +70,7 @@ impl Parts {
                 fs::remove_file(file).map_err(failed)?;
             }
         }
-        Ok(Some((Parts { folder: parts, notes, current: None }, gaps)))
+        Ok((Some(Parts { folder: parts, notes, current: None }), gaps))
     }
 
     /// Adds the rows of the traces from that at place `first` on.

@@ -164,14 +164,13 @@ fn proceed(
     let job = Job::new();
     let name = (engines[0].name(), precision(&*engines[0]));
     let (parts, gaps) = if study.plan().outputs.traces {
-        Parts::open(folder, study, &mut state, provenance(study, name, &on))?.unzip()
+        Parts::open(folder, study, &mut state, provenance(study, name, &on))?
     } else {
         if !std::mem::take(&mut state.kept.parts).is_empty() {
             parts::clear(folder)?;
         }
-        (None, None)
+        (None, Vec::new())
     };
-    let gaps = gaps.unwrap_or_default();
     let (traces_before, mut place) = (state.traces(), state.place(study));
     let (shard, is_done) = (state.shard(), state.stopped() != Stopped::Unfinished);
     let left = if is_done { 0 } else { study.places(shard) - place };
