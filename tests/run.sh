@@ -50,3 +50,5 @@ say "a study's page in a browser"
 tests/page.sh
 say "a trace that plays in a browser"
 tests/animation.sh
+say "kills at random system calls, and a full disk"
+tests/faults.sh 12

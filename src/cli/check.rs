@@ -16,7 +16,7 @@ use super::input::InputArgs;
 use super::look::{Look, Target, save};
 use super::summary::{counted, dropped};
 use super::trade::Terms;
-use super::{interrupt, print, print_json};
+use super::{print, print_json};
 
 /// How many traces are checked at a time.
 const TRACES: usize = 8192;
@@ -37,7 +37,6 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::listen()?;
     let look = Look::of_scene();
     let target = args.picture.as_deref().map(|path| Target::new(path, &look)).transpose()?;
     let is_page =

@@ -7,7 +7,6 @@ use tautline::scene::read_scene_with;
 
 use super::failure::Failure;
 use super::input::{FileArgs, note};
-use super::interrupt::{self, Writing};
 use super::print;
 
 #[derive(Debug, clap::Args)]
@@ -23,13 +22,9 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::listen()?;
     let scene = read_scene_with(&args.from, &args.file.options())?;
     note(&args.from, &scene);
-    let writing = Writing::begin();
-    interrupt::check()?;
     write_scene(&args.to, &scene)?;
-    writing.end()?;
     let is_text = args.to.extension().is_some_and(|e| e.eq_ignore_ascii_case("wkt"));
     if is_text && !scene.is_bare() {
         eprintln!(

@@ -20,8 +20,8 @@ pub use plan::{
     AnchorPlan, AtWalls, OutputPlan, Plan, PlanError, RunPlan, Sampled, ScenePlan, Start, TallyPlan, UntilPlan,
     WalkPlan,
 };
-pub use run::{RunError, Spent, run};
-pub use state::{Shard, State, StateError, merge};
+pub use run::{RunError, Spent, run, run_again};
+pub use state::{Check, Kept, Part, Shard, State, StateError, merge};
 pub use summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Stopped, Summary, Survival,
     SurvivalPoint, Traded, quantity,

@@ -16,7 +16,7 @@ use super::engine::named;
 use super::failure::Failure;
 use super::input::{FileArgs, point};
 use super::progress::Runs;
-use super::{interrupt, named_scene, print, print_json};
+use super::{named_scene, print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -94,7 +94,6 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::listen()?;
     let base = args.setting()?;
     let sweep = args.sweep.map(SweepName::sweep);
     let settings = match sweep {

@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use tautline::study::{AtWalls, Estimate, Stopped, Summary, quantity};
 
-use super::folder::{BaseArgs, Folder};
+use super::folder::{BaseArgs, Folder, SUMMARY};
+use super::run::pretty;
 use crate::cli::failure::Failure;
 use crate::cli::summary::{grouped, short};
 use crate::cli::trade;
@@ -24,10 +25,20 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let (_, study, state) = Folder::open(&args.folder, &args.base)?;
+    let (folder, study, state) = Folder::open(&args.folder, &args.base)?;
     let summary = state.summary(&study);
+    let answer = serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?;
+    let file = folder.file(SUMMARY);
+    let is_other = match std::fs::read(&file) {
+        Ok(bytes) => bytes != pretty(&answer).as_bytes(),
+        Err(_) => state.stopped() != Stopped::Unfinished,
+    };
+    if is_other {
+        let (file, shown) = (file.display(), folder.path().display());
+        eprintln!("note: {file} does not hold this answer; `tautline study resume {shown}` writes it");
+    }
     if args.json {
-        return print_json(&serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?);
+        return print_json(&answer);
     }
     print(&table(&summary, None))
 }

@@ -24,7 +24,7 @@ use super::input::{FileArgs, above_zero, point};
 use super::look::write_whole;
 use super::progress::Runs;
 use super::trade::stride;
-use super::{interrupt, named_scene, print, print_json};
+use super::{named_scene, print, print_json};
 
 /// The seed of built-in walks and scenes unless told otherwise.
 const SEED: u64 = 1;
@@ -93,7 +93,6 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::listen()?;
     let diagram = args.out.as_deref().map(Diagram::new).transpose()?;
     let scene = named_scene::open(&args.scene, args.anchor, &args.file)?;
     let methods = args.methods();

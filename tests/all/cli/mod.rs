@@ -7,6 +7,7 @@ mod describe;
 mod draw;
 mod engines;
 mod extremes;
+mod faults;
 mod newcomer;
 mod process;
 mod queries;

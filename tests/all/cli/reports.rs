@@ -143,7 +143,7 @@ fn check_refuses_what_eval_refuses() {
     folder.refused(2, "check --scene s.geojson --traces v.csv", &["v.csv: trace 3, step 1: ", "crosses wall 0"]);
     folder.refused(2, "check --scene s.wkb", &["s.wkb", ".geojson, .json, .wkt, .svg, .dxf, .map, .yaml, .yml"]);
     folder.refused(2, "check --traces t.csv", &["--traces needs --scene"]);
-    folder.refused(2, "check --scene s.geojson --anchor 3,1", &["inside wall 0"]);
+    folder.refused(2, "check --scene s.geojson --anchor nan,1", &["NaN is not a finite number"]);
 }
 
 #[test]
