@@ -5,12 +5,14 @@ mod arithmetic;
 mod kernel;
 mod pages;
 mod pass;
+mod shapes;
 mod tuning;
 
 pub use adapter::{AdapterChoice, AdapterKind, AdapterSummary, Device, SOFTWARE_HINT, adapters, open_all};
 pub use arithmetic::{Arithmetic, PROBE_WGSL};
 pub use kernel::{DECIDE_WGSL, Deciding, Kernel, SWEEP_WGSL, Sweeping};
 pub use pass::{GpuPass, HALVES};
+pub use shapes::Computed;
 pub use tuning::Tuning;
 
 /// What can go wrong with a GPU.
