@@ -59,7 +59,7 @@ pub(super) struct Outcome {
 pub struct Arithmetic {
     /// Whether all products and sums are the nearest f32, not only one of the two nearest.
     pub rounds_to_nearest: bool,
-    /// Whether a product and a sum are rounded once.
+    /// Whether a product and a sum are rounded once in some shape, and nothing else is done to it.
     pub fuses: bool,
     /// Whether subnormal products become 0.
     pub flushes: bool,
@@ -96,10 +96,10 @@ impl Arithmetic {
                 // What becomes of subnormal numbers is another question.
                 if !is_small(&of_shape(shape)) {
                     found.shapes[shape].1 = found.shapes[shape].1.max(computed);
-                    found.fuses |= computed == Computed::Fused;
                 }
             }
         }
+        found.fuses = found.shapes.iter().any(|(_, computed)| *computed == Computed::Fused);
         Ok(found)
     }
 

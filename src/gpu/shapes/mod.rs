@@ -202,3 +202,52 @@ impl Mul for Exact {
         Exact { value: self.value * other.value, size: self.size * other.size }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+
+    /// A sample in which everything is nothing but these.
+    fn sample(normal: f32, p: f32, offset: f32) -> Sample {
+        let none = Vec2::ZERO;
+        let (normal, p) = (Vec2::new(normal, 0.0), Vec2::new(p, 0.0));
+        Sample { normal, p, q: none, a: none, b: none, origin: none, offset, dir: 1.0 }
+    }
+
+    fn one(shape: usize, sample: Sample, result: f32) -> Computed {
+        let mut results = [0.0; SHAPES.len()];
+        results[shape] = result;
+        computed(|_| sample, &results)[shape]
+    }
+
+    #[test]
+    fn ways_of_computing_are_told_apart() {
+        // The square of 1 + 2^-12 is 1 + 2^-11 + 2^-24, of which the last is rounded away.
+        let x = 1.0 + 2f32.powi(-12);
+        let (plain, fused) = (2f32.powi(-11), 2f32.powi(-11) + 2f32.powi(-24));
+        for (result, expected) in [
+            (plain, Computed::AsWritten),
+            (fused, Computed::Fused),
+            (plain - 2f32.powi(-24), Computed::Rewritten),
+            (plain - 2f32.powi(-12), Computed::Wrong),
+            (f32::NAN, Computed::Wrong),
+        ] {
+            assert_eq!(one(1, sample(x, x, -1.0), result), expected, "{result:e}");
+        }
+        // 1 is lost beside 2^30.
+        let far = sample(1.0, 0.0, 2f32.powi(30));
+        assert_eq!((one(3, far, 0.0), one(3, far, 1.0)), (Computed::AsWritten, Computed::Rewritten));
+        let far = sample(2f32.powi(30), 0.0, 1.0);
+        assert_eq!((one(2, far, 0.0), one(2, far, 1.0)), (Computed::AsWritten, Computed::Rewritten));
+    }
+
+    #[test]
+    fn every_product_of_a_sum_can_be_fused() {
+        let [a, b, c, d] = [1.1f32, 1.3, 1.7, 1.9].map(Ways::of);
+        let found: Vec<f32> = (a * b - c * d).values().collect();
+        let [a, b, c, d] = [1.1f32, 1.3, 1.7, 1.9];
+        assert_eq!(found, [a * b - c * d, a.mul_add(b, -(c * d)), (-c).mul_add(d, a * b)]);
+    }
+}
