@@ -12,7 +12,7 @@ use tautline::gpu::{AdapterChoice, Device};
 use tautline::report::Environment;
 use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured, Plan, Setting, Sweep, measure};
 
-use super::engine::named;
+use super::engine::{named, notes};
 use super::failure::Failure;
 use super::input::{FileArgs, point};
 use super::progress::Runs;
@@ -50,7 +50,7 @@ pub(crate) struct Args {
     /// Only this engine; may be given several times
     #[arg(long, value_name = "ENGINE", value_parser = ["gpu", "cpu", "funnel", "note", "reference"])]
     engine: Vec<String>,
-    /// Which GPU: part of its name, or `software`
+    /// Which GPU: part of its name, its number in `tautline adapters`, or `software`
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// The most steps that one query covers
@@ -195,9 +195,11 @@ impl Args {
 
 /// The GPU called `adapter`, else the best. One that nobody asked for may be missing.
 pub(super) fn open_device(adapter: Option<&str>, is_asked_for: bool) -> Result<Option<Device>, Failure> {
-    match Device::open(&adapter.map_or(AdapterChoice::Best, named)) {
+    let choice = adapter.map_or(AdapterChoice::Best, named);
+    match Device::open(&choice) {
         Ok(device) => {
             eprintln!("engine: gpu on {}", device.summary());
+            notes(&choice, &device).iter().for_each(|note| eprintln!("{note}"));
             Ok(Some(device))
         }
         Err(error) if adapter.is_some() || is_asked_for => Err(error.into()),

@@ -75,7 +75,7 @@ pub(crate) struct Args {
     /// Only this engine's methods; may be given several times
     #[arg(long, value_name = "ENGINE", value_parser = ["gpu", "cpu", "funnel", "note", "reference"])]
     engine: Vec<String>,
-    /// Which GPU: part of its name, or `software`
+    /// Which GPU: part of its name, its number in `tautline adapters`, or `software`
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// How often every method runs at every setting

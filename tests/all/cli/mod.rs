@@ -1,5 +1,6 @@
 //! The program as its users run it: arguments and files in; files, messages and exit codes out.
 
+mod adapters;
 mod batches;
 mod bench;
 mod convert;

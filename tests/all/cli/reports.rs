@@ -155,10 +155,15 @@ fn adapters_lists_the_software_adapter() {
     let shown = folder.done("adapters");
     assert_eq!(shown.stderr, "");
     let header: Vec<_> = shown.stdout.lines().next().unwrap().split_whitespace().collect();
-    assert_eq!(header, ["adapter", "type", "backend", "driver"]);
+    assert_eq!(header, ["number", "adapter", "type", "backend", "driver"]);
     let [name, backend, driver] = ["name", "backend", "driver"].map(|field| software[field].as_str().unwrap());
     assert!(!name.is_empty() && ["vulkan", "metal", "dx12"].contains(&backend) && !driver.is_empty(), "{software}");
-    let line = shown.stdout.lines().find(|l| l.starts_with(name)).unwrap();
+    let (number, line) = shown
+        .stdout
+        .lines()
+        .find_map(|line| line.trim_start().split_once("  ").filter(|l| l.1.starts_with(name)))
+        .unwrap();
+    assert_eq!(json!(number.parse::<u64>().unwrap()), software["number"]);
     assert_eq!(line[name.len()..].split_whitespace().take(2).collect::<Vec<_>>(), ["software", backend]);
     assert!(line.ends_with(driver), "{line}");
     let real = adapters.iter().any(|a| ["discrete", "integrated", "virtual"].contains(&a["type"].as_str().unwrap()));
