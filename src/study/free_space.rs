@@ -176,6 +176,32 @@ mod tests {
     }
 
     #[test]
+    fn a_solid_on_whose_border_the_anchor_stands_is_not_free() {
+        use crate::scene::{Inside, Object, Wall};
+        let rings = [
+            ring(&[[1.0, 1.0], [4.0, 1.0], [4.0, 2.0], [1.0, 2.0]]),
+            ring(&[[0.0, 0.0], [5.0, 0.0], [5.0, 3.0], [0.0, 3.0]]),
+        ];
+        let walls = rings.iter().zip(0..).flat_map(|(ring, object)| {
+            ring.iter().map(move |wall| Wall { ends: wall.map(DVec2::from), object, reversed: false })
+        });
+        let objects = |inside| vec![Object { inside, ..Object::default() }, Object::default()];
+        let scene = |inside| Scene::of(objects(inside), walls.clone()).unwrap();
+        for anchor in [[1.0, 2.0], [2.0, 1.0]] {
+            let within = |inside| {
+                let model = Model::new(scene(inside), Some(anchor.into())).unwrap();
+                let space = FreeSpace::new(&model).unwrap();
+                let mut random = Random::new(1, Purpose::Anchor, 0);
+                let is_within = |p: DVec2| p.cmpgt(DVec2::ONE).all() && p.cmplt(DVec2::new(4.0, 2.0)).all();
+                (0..1000).filter(|_| is_within(space.draw(&mut random))).count()
+            };
+            assert_eq!(within(Inside::EvenOdd), 0);
+            // A thin outline has free space on both sides.
+            assert!(within(Inside::Free) > 100);
+        }
+    }
+
+    #[test]
     fn a_room_round_the_scene_ends_at_its_box() {
         let model = model(&[[[0.0, 0.0], [8.0, 0.125]], [[1.0, 1.0], [7.0, 1.0]]], [4.0, 0.5]);
         let space = FreeSpace::new(&model).unwrap();
