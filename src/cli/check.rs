@@ -6,7 +6,7 @@ use tautline::trace::{Violation, ViolationKind};
 use super::batches::Batches;
 use super::failure::Failure;
 use super::input::InputArgs;
-use super::summary::{counted, dropped};
+use super::summary::{counted, dropped, place};
 use super::trade::Terms;
 use super::{interrupt, print, print_json};
 
@@ -45,12 +45,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }));
     }
     let mut text = format!(
-        "scene   {}: {}, {}, anchor ({}, {})\n",
+        "scene   {}: {}, {}, anchor {}\n",
         args.input.name(),
         counted(scene.walls().len() as u64, "wall", "walls"),
         counted(scene.vertices().len() as u64, "vertex", "vertices"),
-        anchor.x,
-        anchor.y
+        place(anchor)
     );
     if scene.dropped() > 0 {
         text += &format!("        {}\n", dropped(scene.dropped()));

@@ -9,6 +9,7 @@ use super::failure::Failure;
 use super::input::{FileArgs, note};
 use super::interrupt::{self, Writing};
 use super::print;
+use super::summary::place;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -30,7 +31,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     interrupt::check()?;
     write_scene(&args.to, &scene)?;
     writing.end()?;
-    let anchor = scene.anchor().map_or("no anchor".to_owned(), |a| format!("anchor ({}, {})", a.x, a.y));
+    let anchor = scene.anchor().map_or("no anchor".to_owned(), |a| format!("anchor {}", place(a)));
     print(&format!(
         "{}: {} walls, {} vertices, {anchor}\n",
         args.to.display(),

@@ -19,7 +19,7 @@ pub(crate) fn listen() -> Result<(), Failure> {
         STOPPED.store(true, Ordering::SeqCst);
         JOB.get().into_iter().for_each(|job| job.stop());
         if !WRITING.load(Ordering::SeqCst) {
-            eprintln!("\nerror: {}", Failure::interrupted());
+            say!("\nerror: {}", Failure::interrupted());
             leave(130);
         }
     };

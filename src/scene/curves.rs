@@ -8,6 +8,7 @@
 use glam::{DAffine2, DVec2};
 
 use super::pen::Pen;
+use crate::geometry::number;
 
 /// Without a tolerance, walls lie within the drawing's longer side divided by this, to three digits, of their curves.
 const PARTS_OF_SIDE: f64 = 2000.0;
@@ -97,7 +98,10 @@ impl Flattened {
     pub(super) fn note(&self) -> Option<String> {
         let Flattened { curves, tolerance, .. } = self;
         (*curves > 0).then(|| {
-            format!("walls lie within {tolerance} of the curves that they stand for (--flatten); curves: {curves}")
+            format!(
+                "walls lie within {} of the curves that they stand for (--flatten); curves: {curves}",
+                number(*tolerance)
+            )
         })
     }
 }
@@ -157,7 +161,8 @@ impl Outlines {
                     curves += 1;
                     curved += n;
                     if curved > WALLS_MAX {
-                        let what = format!("within {tolerance} of its curves, the drawing would have more than");
+                        let what =
+                            format!("within {} of its curves, the drawing would have more than", number(tolerance));
                         return Err(format!("{what} {WALLS_MAX} walls; give a larger tolerance (--flatten)"));
                     }
                     for k in 1..n as u32 {

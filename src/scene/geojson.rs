@@ -4,8 +4,9 @@ use geojson::{Feature, GeoJson, Geometry, GeometryValue, JsonValue, Position};
 use glam::DVec2;
 
 use super::lines::{push_line, push_ring};
-use super::{Scene, geographic};
+use super::{Scene, excerpt, geographic};
 use crate::geometry::check_point;
+use crate::number::{self, VANISHES};
 use crate::read_error::{Fault, Place};
 
 /// Reads a FeatureCollection, a Feature or a bare geometry.
@@ -13,6 +14,7 @@ use crate::read_error::{Fault, Place};
 /// LineString, MultiLineString, Polygon and MultiPolygon give one wall for each pair of consecutive positions; points
 /// that are no anchor are passed over. The member `"y": "down"` of a FeatureCollection says so. Further numbers of a position (its altitude) are passed over too.
 pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
+    check_numbers(text)?;
     let document: GeoJson = serde_json::from_str(text).map_err(|e| syntax_fault(&e))?;
     let mut found = Found::default();
     let degrees = is_in_degrees(&document);
@@ -34,6 +36,25 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
         scene.note(geographic::WARNING);
     }
     Ok(if y_down { scene.with_y_down() } else { scene })
+}
+
+/// Refuses numbers that the parser would round to 0. They are looked for outside of strings.
+fn check_numbers(text: &str) -> Result<(), Fault> {
+    let (mut rest, mut quoted) = (text, false);
+    while !rest.is_empty() {
+        let end = rest.find('"').unwrap_or(rest.len());
+        let at = text.len() - rest.len();
+        if !quoted && let Some(number) = number::vanishing(&rest[..end]) {
+            let before = &text[..at + number.start];
+            let column = before.len() - before.rfind('\n').map_or(0, |end| end + 1) + 1;
+            let place = Place::line(before.matches('\n').count() as u64 + 1).then("column", column);
+            return Err(Fault::new(place, format!("{} is {VANISHES}", excerpt(&rest[number]))));
+        }
+        let escaped = quoted && rest[..end].bytes().rev().take_while(|&b| b == b'\\').count() % 2 == 1;
+        quoted ^= !escaped;
+        rest = rest.get(end + 1..).unwrap_or_default();
+    }
+    Ok(())
 }
 
 /// A member of a FeatureCollection that GeoJSON does not define.

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use super::cells::SIDE_MAX;
 use super::excerpt;
-use crate::read_error::{Fault, Place, ReadError, read_bytes};
+use crate::read_error::{Fault, Place, ReadError};
+use crate::read_file::{SCENE_MAX, read_bytes};
 
 /// How many pixels an image may have: an eighth of that are the bytes that it takes.
 const PIXELS_MAX: usize = 1 << 28;
@@ -38,7 +39,7 @@ impl Bits {
 
 /// Reads an image and asks of each of its pixels whether it is set.
 pub(super) fn read(path: &Path, set: impl FnMut(Pixel) -> bool) -> Result<Bits, ReadError> {
-    parse(&read_bytes(path)?, set).map_err(|fault| fault.in_file(path))
+    parse(&read_bytes(path, SCENE_MAX)?, set).map_err(|fault| fault.in_file(path))
 }
 
 fn parse(bytes: &[u8], set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> {
@@ -73,6 +74,9 @@ fn fill(bits: &mut Bits, from: usize, pixels: impl Iterator<Item = Pixel>, set: 
 fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> {
     let wrong = |e: png::DecodingError| fault(format!("not PNG: {e}"));
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    // Texts and colour profiles are no pixels, and may be far larger than they are in the file.
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().map_err(wrong)?;
     let info = reader.info();
@@ -132,6 +136,7 @@ fn pgm(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
         if data.len() / size < width * height {
             return Err(short(data.len() / size));
         }
+        ends(&data[size * width * height..], width * height)?;
         let mut bits = room(width, height)?;
         let values = data.chunks_exact(size).map(|v| v.iter().fold(0, |sum, &b| sum * 256 + usize::from(b)));
         fill(&mut bits, 0, values.take(width * height).map(shade), &mut set);
@@ -151,7 +156,17 @@ fn pgm(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
             word.parse().map_err(|_| fault(format!("pixel {i} is {:?}; it must be a number", excerpt(word))))?;
         fill(&mut bits, i, std::iter::once(shade(value)), &mut set);
     }
+    let rest = word(bytes, &mut at);
+    ends(rest.as_bytes(), width * height)?;
     Ok(bits)
+}
+
+/// Refuses what comes after the last pixel but white space: the header's sides are not those of the image, then.
+fn ends(rest: &[u8], pixels: usize) -> Result<(), Fault> {
+    match rest.trim_ascii() {
+        [] => Ok(()),
+        _ => Err(fault(format!("the image goes on after the {pixels} pixels that its header says"))),
+    }
 }
 
 fn header(word: &str) -> Fault {
@@ -241,6 +256,10 @@ mod tests {
         }
         assert_eq!(fault(b"P5 3 1 255\n\x00\xcd"), "the image ends after 2 of 3 pixels");
         assert_eq!(fault(b"P2 3 1 255\n0 205 "), "the image ends after 2 of 3 pixels");
+        assert_eq!(pixels(b"P5 1 1 255\n\0\n").unwrap().1, pixels(b"P2 1 1 255 0 # all\n").unwrap().1);
+        for more in [&b"P5 3 1 255\n\0\0\0\0"[..], b"P5 1 3 65535 \0\0\0\0\0\0 P5", b"P2 3 1 255\n0 205 255 0"] {
+            assert_eq!(fault(more), "the image goes on after the 3 pixels that its header says");
+        }
         assert_eq!(fault(b"P2 2 1 255\n0 -1"), "pixel 1 is \"-1\"; it must be a number");
         assert_eq!(fault(b"BM"), "neither PNG nor PGM; save the image as one of them");
         let mut huge = png_of(png::ColorType::Grayscale, png::BitDepth::Eight, 3, &[0, 205, 255]);

@@ -94,7 +94,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     }
     let study = Study::open(plan, &base)?;
     if is_stuck(&study)? {
-        eprintln!("note: the first traces stay where they start: is no step of the walk possible in this scene?");
+        say!("note: the first traces stay where they start: is no step of the walk possible in this scene?");
     }
     if let Some(file) = &study.plan().scene.file {
         note(file, study.models()[0].scene());

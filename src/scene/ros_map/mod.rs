@@ -9,7 +9,8 @@ use glam::DVec2;
 use super::cells::borders;
 use super::image::{self, Pixel};
 use super::{Scene, Unknown};
-use crate::read_error::{Fault, Place, ReadError, read_text};
+use crate::read_error::{Fault, Place, ReadError};
+use crate::read_file::{SETTINGS_MAX, read_text};
 use yaml::values;
 
 /// How many walls a map may have. Images as small as a few bytes can hold far more.
@@ -50,7 +51,7 @@ enum Cell {
 /// Reads a map and the image that it names, relative to the map's own folder. Coordinates are metres in the map's frame,
 /// y upwards. What lies around the image is no cell: its outer edge is no wall.
 pub(super) fn read(path: &Path, unknown: Unknown) -> Result<Scene, ReadError> {
-    let text = read_text(path)?;
+    let text = read_text(path, SETTINGS_MAX)?;
     let map = parse(&text).map_err(|fault| fault.in_file(path))?;
     let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
     let mut unknowns = 0;

@@ -3,6 +3,7 @@
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
 use super::super::excerpt;
+use crate::number;
 use crate::read_error::{Fault, Place};
 
 /// A value of the file, and its line.
@@ -21,7 +22,7 @@ impl Value {
 
     /// As many finite numbers: a list, or a value alone if it is to be one.
     pub(super) fn numbers<const N: usize>(&self, key: &str, right: &str) -> Result<[f64; N], Fault> {
-        let numbers: Option<Vec<f64>> = self.items.iter().map(|item| item.parse().ok()).collect();
+        let numbers: Option<Vec<f64>> = self.items.iter().map(|item| number::parse(item).ok()).collect();
         let numbers = numbers.filter(|all| self.list == (N > 1) && all.iter().all(|n| n.is_finite()));
         numbers.and_then(|all| all.try_into().ok()).ok_or_else(|| self.fault(key, right))
     }

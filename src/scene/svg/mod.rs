@@ -4,6 +4,7 @@
 //! and SVG's own notations are those that `usvg` stands on. `usvg` itself computes in f32 and passes over what it cannot
 //! read, so the tree is walked here.
 
+mod bounds;
 mod page;
 mod path;
 mod shapes;
@@ -65,8 +66,12 @@ const DEFINITIONS: [&str; 20] = [
 /// What is hidden is none; texts and images are none and are counted. The element with the id or the Inkscape label
 /// `anchor` marks the anchor by its middle.
 pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
+    bounds::check_entities(text)?;
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|e| syntax_fault(&e))?;
+    if let Some((node, what)) = bounds::vanishing(&document) {
+        return Err(fault_at(node, &what));
+    }
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
         let what = format!("not SVG: the outermost element is <{}>, not <svg>", root.tag_name().name());
@@ -175,6 +180,9 @@ impl<'a, 'i> Reader<'a, 'i> {
     /// What the insides of `node` inherit; `None` if they are hidden.
     fn context(&mut self, node: Node<'a, 'i>, outer: &Context) -> Result<Option<Context>, Fault> {
         let looks = self.styles.looks(node);
+        if self.styles.is_spent() {
+            return Err(fault_at(node, "the style sheets have too many rules for so many elements, or too deep ones"));
+        }
         if looks.removed {
             self.hidden += 1;
             return Ok(None);

@@ -1,5 +1,7 @@
 //! What of an element's style matters for walls: whether it is shown, and whether it is cut.
 
+use std::cell::Cell;
+
 use roxmltree::{Document, Node};
 use simplecss::{AttributeOperator, Declaration, DeclarationTokenizer, Element, PseudoClass, Rule, StyleSheet};
 
@@ -20,16 +22,36 @@ pub(super) struct Looks {
 }
 
 /// The rules of all style sheets in a document that say anything that matters, the more specific ones last.
-pub(super) struct Styles<'a>(Vec<Rule<'a>>);
+pub(super) struct Styles<'a> {
+    rules: Vec<Rule<'a>>,
+    /// How many looks at elements are left for finding out which rules match.
+    left: Cell<u64>,
+}
+
+/// How many looks at elements there may be: some seconds.
+const LOOKS_MAX: u64 = 1 << 27;
+
+/// How many style sheets a document may have: all rules are sorted again with each.
+const SHEETS_MAX: usize = 1 << 10;
 
 impl<'a> Styles<'a> {
     pub(super) fn of(document: &'a Document<'_>) -> Self {
         let mut sheet = StyleSheet::new();
+        let mut sheets = 0;
         for node in document.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "style"))) {
-            node.children().filter_map(|n| n.text()).for_each(|text| sheet.parse_more(text));
+            node.children().filter_map(|n| n.text()).take(SHEETS_MAX).for_each(|text| sheet.parse_more(text));
+            sheets += node.children().count();
+            if sheets > SHEETS_MAX {
+                return Styles { rules: Vec::new(), left: Cell::new(0) };
+            }
         }
         sheet.rules.retain(|rule| rule.declarations.iter().any(|d| PROPERTIES.contains(&d.name)));
-        Styles(sheet.rules)
+        Styles { rules: sheet.rules, left: Cell::new(LOOKS_MAX) }
+    }
+
+    /// Whether there was more to look at than may be; what was said of elements then is of no use.
+    pub(super) fn is_spent(&self) -> bool {
+        self.left.get() == 0
     }
 
     pub(super) fn looks(&self, node: Node<'_, '_>) -> Looks {
@@ -40,9 +62,9 @@ impl<'a> Styles<'a> {
             }
         }
         let matching: Vec<&Declaration<'_>> = self
-            .0
+            .rules
             .iter()
-            .filter(|rule| rule.selector.matches(&Styled(node)))
+            .filter(|rule| rule.selector.matches(&Styled(node, &self.left)))
             .flat_map(|rule| &rule.declarations)
             .collect();
         let inline = node.attribute("style").unwrap_or_default();
@@ -76,24 +98,32 @@ impl Looks {
     }
 }
 
-/// An element as style sheets select it.
-struct Styled<'a, 'i>(Node<'a, 'i>);
+/// An element as style sheets select it, and how many looks are left.
+struct Styled<'a, 'i, 'l>(Node<'a, 'i>, &'l Cell<u64>);
 
-impl Element for Styled<'_, '_> {
+impl Styled<'_, '_, '_> {
+    /// Counts a look; once none is left, nothing is found any more.
+    fn may_look(&self) -> bool {
+        self.1.set(self.1.get().saturating_sub(1));
+        self.1.get() > 0
+    }
+}
+
+impl Element for Styled<'_, '_, '_> {
     fn parent_element(&self) -> Option<Self> {
-        self.0.parent_element().map(Styled)
+        self.0.parent_element().filter(|_| self.may_look()).map(|node| Styled(node, self.1))
     }
 
     fn prev_sibling_element(&self) -> Option<Self> {
-        self.0.prev_sibling_element().map(Styled)
+        self.0.prev_sibling_element().filter(|_| self.may_look()).map(|node| Styled(node, self.1))
     }
 
     fn has_local_name(&self, name: &str) -> bool {
-        self.0.tag_name().name() == name
+        self.may_look() && self.0.tag_name().name() == name
     }
 
     fn attribute_matches(&self, local_name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.0.attribute(local_name).is_some_and(|value| operator.matches(value))
+        self.may_look() && self.0.attribute(local_name).is_some_and(|value| operator.matches(value))
     }
 
     fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
@@ -138,5 +168,22 @@ mod tests {
         ] {
             assert_eq!(looks(name), expected, "{name}");
         }
+    }
+
+    #[test]
+    fn rules_times_elements_are_bounded() {
+        let spent = |style: &str, body: &str| {
+            let text = format!("<svg xmlns=\"http://www.w3.org/2000/svg\"><style>{style}</style>{body}</svg>");
+            let fault = super::super::parse(&text, None).err();
+            fault.is_some_and(|fault| fault.what.contains("too many rules for so many elements"))
+        };
+        let rules = |count: usize| (0..count).map(|i| format!(".c{i}{{display:none}}")).collect::<String>();
+        assert!(!spent(&rules(1000), &"<g/>".repeat(10_000)));
+        assert!(spent(&rules(20_000), &"<g/>".repeat(20_000)));
+        // Which of its ancestors are meant by each of eight names can be tried in very many ways.
+        let deep = format!("{}<path d=''/>{}", "<g>".repeat(100), "</g>".repeat(100));
+        assert!(spent("a g g g g g g g g path {display:none}", &deep));
+        // A look into an attribute of any length is one look, but a sheet is sorted in no time.
+        assert!(spent(&format!("</style>{}<style>", "<style>a{display:none}</style>".repeat(2000)), ""));
     }
 }

@@ -9,6 +9,7 @@ mod extremes;
 mod process;
 mod reports;
 mod results;
+mod safety;
 mod scenes;
 mod study;
 mod traces;
