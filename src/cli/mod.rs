@@ -33,7 +33,6 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use failure::Failure;
 use say::{print, print_json};
 
 /// Taut ropes of dragged traces among walls, in bulk and exactly, on the GPU.

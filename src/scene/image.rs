@@ -104,7 +104,54 @@ fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
     }
     // What ends before its end may have lost more than that.
     reader.finish().map_err(wrong)?;
+    if inflates_beyond(bytes, raw_size(reader.info())) {
+        return Err(goes_on(width * height));
+    }
     Ok(bits)
+}
+
+/// How many bytes the rows have before they are compressed, with the byte before each that names its filter.
+fn raw_size(info: &png::Info<'_>) -> u64 {
+    let row = |width: u32| 1 + (u64::from(width) * info.bits_per_pixel() as u64).div_ceil(8);
+    if !info.interlaced {
+        return u64::from(info.height) * row(info.width);
+    }
+    // Seven images, each with the first column and row that it has, and the steps to the next ones.
+    let passes = [(0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2)];
+    let sides = passes.map(|(x, y, dx, dy): (u32, u32, u32, u32)| {
+        [info.width.saturating_sub(x).div_ceil(dx), info.height.saturating_sub(y).div_ceil(dy)]
+    });
+    sides.iter().filter(|side| side[0] > 0).map(|&[width, height]| u64::from(height) * row(width)).sum()
+}
+
+/// Whether the compressed pixels of a sound PNG are more than `size` bytes: the decoder stops there and does not look.
+fn inflates_beyond(bytes: &[u8], size: u64) -> bool {
+    let mut inflate = flate2::Decompress::new(true);
+    let mut out = vec![0; 1 << 16];
+    let mut rest = bytes.get(8..).unwrap_or_default();
+    while let Some((&length, tail)) = rest.split_first_chunk::<4>().map(|(length, tail)| (length, tail)) {
+        let length = u32::from_be_bytes(length) as usize;
+        let Some(chunk) = tail.get(4..4 + length) else { return false };
+        if tail.starts_with(b"IDAT") {
+            let mut data = chunk;
+            loop {
+                let before = (inflate.total_in(), inflate.total_out());
+                let status = inflate.decompress(data, &mut out, flate2::FlushDecompress::None);
+                if inflate.total_out() > size {
+                    return true;
+                }
+                data = &data[(inflate.total_in() - before.0) as usize..];
+                match status {
+                    Ok(flate2::Status::Ok | flate2::Status::BufError)
+                        if before != (inflate.total_in(), inflate.total_out()) => {}
+                    Ok(flate2::Status::StreamEnd) | Err(_) => return false,
+                    Ok(_) => break,
+                }
+            }
+        }
+        rest = tail.get(4 + length + 4..).unwrap_or_default();
+    }
+    false
 }
 
 /// A pixel of 8-bit samples: grey or red, green and blue, and alpha behind them if there are two or four.
@@ -165,8 +212,12 @@ fn pgm(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
 fn ends(rest: &[u8], pixels: usize) -> Result<(), Fault> {
     match rest.trim_ascii() {
         [] => Ok(()),
-        _ => Err(fault(format!("the image goes on after the {pixels} pixels that its header says"))),
+        _ => Err(goes_on(pixels)),
     }
+}
+
+fn goes_on(pixels: usize) -> Fault {
+    fault(format!("the image goes on after the {pixels} pixels that its header says"))
 }
 
 fn header(word: &str) -> Fault {
@@ -267,5 +318,44 @@ mod tests {
         assert!(fault(&huge[..cut]).starts_with("not PNG: "));
         huge[16] = 0x3b;
         assert!(!fault(&huge).is_empty());
+    }
+
+    #[test]
+    fn no_more_pixels_are_taken_than_the_header_says() {
+        use png::{BitDepth, ColorType};
+        // The header's height, and then its check sum, are made smaller.
+        let cut = |mut png: Vec<u8>, height: u8| {
+            png[23] = height;
+            let crc =
+                (0..256u32).map(|n| (0..8).fold(n, |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 }));
+            let table: Vec<u32> = crc.collect();
+            let sum = png[12..29].iter().fold(!0u32, |c, &b| table[((c ^ u32::from(b)) & 255) as usize] ^ (c >> 8));
+            png[29..33].copy_from_slice(&(!sum).to_be_bytes());
+            png
+        };
+        let image = |height: u32| {
+            let mut bytes = Vec::new();
+            let mut encoder = png::Encoder::new(&mut bytes, 7, height);
+            encoder.set_color(ColorType::Grayscale);
+            encoder.set_depth(BitDepth::Two);
+            let data = (0..2 * height as u8).collect::<Vec<u8>>();
+            encoder.write_header().unwrap().write_image_data(&data).unwrap();
+            bytes
+        };
+        for height in [1, 2, 9] {
+            assert_eq!(pixels(&image(height)).unwrap().1.len(), 7 * height as usize);
+            assert_eq!(pixels(&cut(image(height), height as u8)).unwrap().1.len(), 7 * height as usize);
+        }
+        let e = pixels(&cut(image(9), 8)).unwrap_err().what;
+        assert_eq!(e, "the image goes on after the 56 pixels that its header says");
+        // Of 8 x 8 pixels the seven images have 1, 1, 1, 2, 2, 4 and 4 rows.
+        let size = |width: u32, height: u32| {
+            let mut info = png::Info::with_size(width, height);
+            info.interlaced = true;
+            info.color_type = ColorType::Grayscale;
+            info.bit_depth = BitDepth::Eight;
+            raw_size(&info)
+        };
+        assert_eq!((size(1, 1), size(8, 8)), (2, 64 + 15));
     }
 }

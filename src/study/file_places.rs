@@ -84,9 +84,6 @@ pub(super) fn vanishing(text: &str) -> Option<String> {
 
 /// The key without which the fault is another one, or none.
 fn culprit<'k>(document: &toml::Table, message: &str, keys: &'k [Key]) -> Option<&'k Key> {
-    if message.starts_with("missing") {
-        return None;
-    }
     let fault = |document: &toml::Table| {
         Plan::deserialize(toml::Value::Table(document.clone())).err().map(|e| e.message().to_owned())
     };
@@ -98,10 +95,17 @@ fn culprit<'k>(document: &toml::Table, message: &str, keys: &'k [Key]) -> Option
         let table = names.iter().try_fold(&mut rest, |table, name| table.get_mut(*name)?.as_table_mut());
         table.and_then(|table| table.remove(last)).is_some() && fault(&rest) != whole
     };
-    // Without its kind, nothing is said of a walk but that.
-    let (kinds, others): (Vec<&Key>, Vec<&Key>) =
-        keys.iter().filter(|key| key.leaf).partition(|key| key.name.ends_with(".kind"));
-    others.into_iter().chain(kinds).find(decides)
+    // What is missing is so in a table. Without its kind nothing else is said of a walk, nor without a whole section.
+    let missing = message.starts_with("missing");
+    let rank = |key: &Key| match (key.leaf, key.name.contains('.')) {
+        (true, _) if !key.name.ends_with(".kind") => 0,
+        (false, true) => 1,
+        (true, _) => 2,
+        (false, false) => 3,
+    };
+    let mut candidates: Vec<&Key> = keys.iter().filter(|key| !(missing && key.leaf)).collect();
+    candidates.sort_by_key(|key| rank(key));
+    candidates.into_iter().find(decides)
 }
 
 /// All keys, in the order in which they stand.

@@ -61,6 +61,7 @@ impl Gatherer {
             let old = trace.points.len();
             // Adding zero turns negative zeros into positive ones.
             trace.points.extend(points(first..end).map(|p| p + DVec2::ZERO));
+            self.points += end - first;
             let wrong = check_points(&trace.points[old..]).err().map(|(i, _)| i);
             match (wrong, out_of_order) {
                 (Some(i), other) if other.as_ref().is_none_or(|(j, _)| i <= *j) => {
@@ -69,7 +70,6 @@ impl Gatherer {
                 (_, Some((i, what))) => return Err((first + i, what)),
                 _ => {}
             }
-            self.points += end - first;
             first = end;
         }
         Ok(())

@@ -6,6 +6,9 @@ use super::super::excerpt;
 use crate::number;
 use crate::read_error::{Fault, Place};
 
+/// How many keys a map may have, each of which is compared with all others.
+const KEYS_MAX: usize = 1 << 10;
+
 /// A value of the file, and its line.
 pub(super) struct Value {
     line: u64,
@@ -91,6 +94,9 @@ pub(super) fn values(text: &str) -> Result<Vec<(String, Value)>, Fault> {
 }
 
 fn push(values: &mut Vec<(String, Value)>, key: String, value: Value) -> Result<(), Fault> {
+    if values.len() > KEYS_MAX {
+        return Err(Fault::new(Place::line(value.line), format!("more than {KEYS_MAX} keys; is this a map?")));
+    }
     if values.iter().any(|(k, _)| *k == key) {
         return Err(Fault::new(Place::line(value.line), format!("{key} a second time")));
     }

@@ -107,6 +107,97 @@ fn length<'a>(
     longest
 }
 
+/// How many attributes an element may have: the parser compares each with all others.
+const ATTRIBUTES_MAX: usize = 1 << 10;
+
+/// How much may be done about namespaces: where elements declare some, their number with all that they inherit, squared.
+const NAMESPACES_MAX: u64 = 1 << 28;
+
+/// Refuses tags about which the parser would think for hours: of very many attributes, or namespaces within namespaces. O(length).
+pub(super) fn check_tags(text: &str) -> Result<(), Fault> {
+    let fault = |at: usize, what: String| {
+        let line = text[..at].matches('\n').count() as u64 + 1;
+        Err(Fault::new(Place::line(line), what))
+    };
+    // How many namespaces each open element knows, from the outermost on.
+    let mut known = vec![1u64];
+    let (mut at, mut spent) = (0, 0u64);
+    while let Some(found) = text[at..].find('<') {
+        let start = at + found;
+        let rest = &text[start..];
+        let passed =
+            [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")].into_iter().find(|(open, _)| rest.starts_with(open));
+        if let Some((_, close)) = passed {
+            at = start + rest.find(close).map_or(rest.len(), |end| end + close.len());
+        } else if rest.starts_with("</") {
+            if known.len() > 1 {
+                known.pop();
+            }
+            at = start + 2;
+        } else if rest.starts_with("<!") {
+            at = start + 2;
+        } else {
+            let tag = Tag::of(rest);
+            if tag.attributes > ATTRIBUTES_MAX {
+                return fault(
+                    start,
+                    format!("an element of {} attributes; {ATTRIBUTES_MAX} are the most", tag.attributes),
+                );
+            }
+            let names = known.last().copied().unwrap_or(1) + tag.namespaces;
+            if tag.namespaces > 0 {
+                spent = spent.saturating_add(names * names);
+            }
+            if spent > NAMESPACES_MAX {
+                return fault(start, "too many namespaces declared within each other".to_owned());
+            }
+            if !tag.closed {
+                known.push(names);
+            }
+            at = start + tag.length;
+        }
+    }
+    Ok(())
+}
+
+/// What is in a tag.
+struct Tag {
+    attributes: usize,
+    namespaces: u64,
+    /// Whether nothing is in the element.
+    closed: bool,
+    length: usize,
+}
+
+impl Tag {
+    /// The tag with which `text` begins, or what there is of it.
+    fn of(text: &str) -> Self {
+        let mut tag = Tag { attributes: 0, namespaces: 0, closed: false, length: 1 };
+        while let Some(next) = text[tag.length..].find(['"', '\'', '>', '<']) {
+            let (name, end) = (&text[tag.length..tag.length + next], tag.length + next);
+            match text.as_bytes()[end] {
+                b'>' => {
+                    tag.closed = name.ends_with('/');
+                    tag.length = end + 1;
+                    return tag;
+                }
+                b'<' => {
+                    tag.length = end;
+                    return tag;
+                }
+                quote => {
+                    tag.attributes += 1;
+                    tag.namespaces += u64::from(name.contains("xmlns"));
+                    let value = text[end + 1..].find(char::from(quote));
+                    tag.length = value.map_or(text.len(), |length| end + 1 + length + 1);
+                }
+            }
+        }
+        tag.length = text.len();
+        tag
+    }
+}
+
 /// The first element with a number that would be rounded to 0, and what is wrong with it. O(length of the attributes).
 pub(super) fn vanishing<'a, 'i>(document: &'a Document<'i>) -> Option<(Node<'a, 'i>, String)> {
     document.descendants().find_map(|node| {
@@ -154,6 +245,20 @@ mod tests {
         assert!(e.contains("not SVG: "), "{e}");
         let many: String = (0..2000).map(|i| format!("<!ENTITY e{i} 'x'>")).collect();
         assert_eq!(fault(&many, "&e1;"), ": the file declares 2000 entities; 1024 are the most");
+    }
+
+    #[test]
+    fn tags_that_take_hours_are_refused() {
+        let fault = |body: &str| super::super::parse(&drawing("", body), None).unwrap_err();
+        let attributes = |count: usize| (0..count).map(|i| format!(" a{i}='>'")).collect::<String>();
+        let e = fault(&format!("\n<g a=\"'\"{}/>", attributes(5000)));
+        assert_eq!((e.place, &*e.what), (Place::line(4), "an element of 5001 attributes; 1024 are the most"));
+        let nested: String = (0..20_000).map(|i| format!("<g xmlns:a{i}='u{i}'>")).collect();
+        assert_eq!(fault(&nested).what, "too many namespaces declared within each other");
+        // Side by side they are as programs write them.
+        let side: String = (0..20_000).map(|i| format!("<g xmlns:a='u{}'></g><g xmlns='{i}'/>", i % 9)).collect();
+        let comment = format!("<!-- <g {} --><![CDATA[<g>]]>", attributes(2000));
+        super::super::parse(&drawing("", &format!("{comment}{side}<g{}/>", attributes(1000))), None).unwrap();
     }
 
     #[test]

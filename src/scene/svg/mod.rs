@@ -67,6 +67,7 @@ const DEFINITIONS: [&str; 20] = [
 /// `anchor` marks the anchor by its middle.
 pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
     bounds::check_entities(text)?;
+    bounds::check_tags(text)?;
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|e| syntax_fault(&e))?;
     if let Some((node, what)) = bounds::vanishing(&document) {

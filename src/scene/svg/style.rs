@@ -29,24 +29,28 @@ pub(super) struct Styles<'a> {
 }
 
 /// How many looks at elements there may be: some seconds.
-const LOOKS_MAX: u64 = 1 << 27;
+const LOOKS_MAX: u64 = 1 << 26;
 
-/// How many style sheets a document may have: all rules are sorted again with each.
-const SHEETS_MAX: usize = 1 << 10;
+/// How many bytes of text are passed over in the time of a look.
+const BYTES_A_LOOK: usize = 64;
 
 impl<'a> Styles<'a> {
     pub(super) fn of(document: &'a Document<'_>) -> Self {
         let mut sheet = StyleSheet::new();
-        let mut sheets = 0;
+        let left = Cell::new(LOOKS_MAX);
         for node in document.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "style"))) {
-            node.children().filter_map(|n| n.text()).take(SHEETS_MAX).for_each(|text| sheet.parse_more(text));
-            sheets += node.children().count();
-            if sheets > SHEETS_MAX {
-                return Styles { rules: Vec::new(), left: Cell::new(0) };
+            for text in node.children().filter_map(|n| n.text()) {
+                charge(&left, reading(text));
+                if left.get() == 0 {
+                    break;
+                }
+                sheet.parse_more(text);
+                // All rules are sorted again.
+                charge(&left, sheet.rules.len());
             }
         }
         sheet.rules.retain(|rule| rule.declarations.iter().any(|d| PROPERTIES.contains(&d.name)));
-        Styles { rules: sheet.rules, left: Cell::new(LOOKS_MAX) }
+        Styles { rules: sheet.rules, left }
     }
 
     /// Whether there was more to look at than may be; what was said of elements then is of no use.
@@ -68,6 +72,8 @@ impl<'a> Styles<'a> {
             .flat_map(|rule| &rule.declarations)
             .collect();
         let inline = node.attribute("style").unwrap_or_default();
+        charge(&self.left, reading(inline));
+        let inline = if self.is_spent() { "" } else { inline };
         let inline: Vec<Declaration<'_>> = DeclarationTokenizer::from(inline).collect();
         // What is important comes last and so wins.
         for important in [false, true] {
@@ -77,6 +83,16 @@ impl<'a> Styles<'a> {
         }
         looks
     }
+}
+
+/// Takes that many looks from those that are left.
+fn charge(left: &Cell<u64>, looks: usize) {
+    left.set(left.get().saturating_sub(looks as u64));
+}
+
+/// What reading declarations costs, in looks: with each, the parser goes through the text from its start.
+fn reading(text: &str) -> usize {
+    text.len().saturating_mul(text.bytes().filter(|&b| b == b':').count()) / BYTES_A_LOOK
 }
 
 impl Looks {
@@ -104,7 +120,7 @@ struct Styled<'a, 'i, 'l>(Node<'a, 'i>, &'l Cell<u64>);
 impl Styled<'_, '_, '_> {
     /// Counts a look; once none is left, nothing is found any more.
     fn may_look(&self) -> bool {
-        self.1.set(self.1.get().saturating_sub(1));
+        charge(self.1, 1);
         self.1.get() > 0
     }
 }
@@ -123,7 +139,12 @@ impl Element for Styled<'_, '_, '_> {
     }
 
     fn attribute_matches(&self, local_name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.may_look() && self.0.attribute(local_name).is_some_and(|value| operator.matches(value))
+        if !self.may_look() {
+            return false;
+        }
+        let Some(value) = self.0.attribute(local_name) else { return false };
+        charge(self.1, value.len() / BYTES_A_LOOK);
+        operator.matches(value)
     }
 
     fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
@@ -179,11 +200,15 @@ mod tests {
         };
         let rules = |count: usize| (0..count).map(|i| format!(".c{i}{{display:none}}")).collect::<String>();
         assert!(!spent(&rules(1000), &"<g/>".repeat(10_000)));
-        assert!(spent(&rules(20_000), &"<g/>".repeat(20_000)));
+        assert!(spent(&rules(10_000), &"<g/>".repeat(10_000)));
         // Which of its ancestors are meant by each of eight names can be tried in very many ways.
         let deep = format!("{}<path d=''/>{}", "<g>".repeat(100), "</g>".repeat(100));
         assert!(spent("a g g g g g g g g path {display:none}", &deep));
-        // A look into an attribute of any length is one look, but a sheet is sorted in no time.
-        assert!(spent(&format!("</style>{}<style>", "<style>a{display:none}</style>".repeat(2000)), ""));
+        // All rules are sorted again with each sheet, and all declarations read again with each.
+        assert!(spent(&format!("</style>{}<style>", "<style>a{display:none}</style>".repeat(20_000)), ""));
+        assert!(spent(&format!("a{{{}}}", "b:c;".repeat(100_000)), ""));
+        assert!(spent("", &format!("<g style=\"{}\"/>", "b:c;".repeat(100_000))));
+        let class = format!("<g class=\"{}\"/>", "x ".repeat(1_000_000));
+        assert!(!spent(&rules(500), &class) && spent(&rules(5000), &class));
     }
 }

@@ -73,7 +73,7 @@ fn numbers_are_what_they_say_or_refused() {
         ),
         ("b.wkt", "LINESTRING(0 0,\n1e-400 1)".to_owned(), &*format!("line 2: \"1e-400\" {small}")),
         ("c.wkt", "LINESTRING(0 0,+-1 1)".to_owned(), "line 1: not WKT: \"+-1\" stands where a number"),
-        ("d.geojson", geojson("1e-400"), &*format!("line 3, column 127: 1e-400 {small}")),
+        ("d.geojson", geojson("1e-400"), &*format!("line 3, column 99: 1e-400 {small}")),
         ("e.geojson", geojson("++1"), "not GeoJSON"),
         ("f.dxf", line("-1e-400"), &*format!("group code 10 has the value \"-1e-400\", too small")),
         ("g.dxf", line("++1"), "group code 10 has the value \"++1\"; it must be a number"),
@@ -102,7 +102,6 @@ fn large_numbers_are_short() {
     assert!(done.stdout.contains("anchor (5e149, 1e150)"), "{}", done.stdout);
     assert!(done.stdout.lines().all(|line| line.len() < 160), "{}", done.stdout);
     assert!(folder.done("convert s.wkt o.geojson").stdout.contains("anchor (5e149, 1e150)"));
-    folder.refused(2, "check --scene s.wkt --anchor 0,0.5e150 --flatten -1", &["--flatten"]);
 }
 
 #[cfg(unix)]
@@ -228,12 +227,14 @@ mod unix {
                 name,
                 &format!("{name}: the file has 1099511627776 bytes; one of its kind may have"),
             );
+            fs::remove_file(folder.path(name)).unwrap();
         }
         let eval = "eval --scene s.geojson --traces";
         folder.refused(2, &format!("{eval} zero.csv"), &["zero.csv: this is a device; write what it gives to"]);
         File::create(folder.path("large.csv")).unwrap().set_len(1 << 40).unwrap();
         let finished = bash(&folder, &format!("ulimit -v 1000000; tautline {eval} large.csv"));
         finished.has_failed(2, "large.csv", &["large.csv: line 1: a line of more than 65536 bytes"]);
+        fs::remove_file(folder.path("large.csv")).unwrap();
         let finished = bash(&folder, &format!("ulimit -v 1000000; tautline {eval} <(cat /dev/zero)"));
         finished.has_failed(2, "zeros", &[": line 1: a line of more than 65536 bytes"]);
         let study = "[scene]\nfile = \"s.geojson\"\n[walk]\nkind = \"given\"\nfile = \"p.csv\"\n";
