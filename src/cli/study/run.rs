@@ -9,7 +9,7 @@ use serde_json::json;
 use tautline::engine::{Engine, EngineError, Job};
 use tautline::picture;
 use tautline::report::Environment;
-use tautline::study::{EXAMPLE, Plan, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go};
+use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go};
 
 use super::folder::{BaseArgs, Folder, RUN_REPORT};
 use super::parts::Parts;
@@ -92,7 +92,11 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
             "--shard: a shard cannot know when the whole study is certain enough; leave out [until]"
         )));
     }
-    let study = Study::open(plan, &base)?;
+    let located = |e: PlanError| match &args.file {
+        Some(file) => e.in_file(file),
+        None => e,
+    };
+    let study = Study::open(plan, &base).map_err(located)?;
     if is_stuck(&study)? {
         say!("note: the first traces stay where they start: is no step of the walk possible in this scene?");
     }
