@@ -40,6 +40,7 @@ pub mod gpu;
 mod number;
 pub mod output;
 pub mod picture;
+pub mod queries;
 mod read_error;
 mod read_file;
 pub mod report;

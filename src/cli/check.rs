@@ -90,7 +90,7 @@ fn count(args: &Args, terms: &Terms) -> Result<Counts, Failure> {
 fn violation(v: &Violation) -> serde_json::Value {
     let kind = match v.kind {
         ViolationKind::Crosses => "crosses",
-        ViolationKind::EndsInside => "ends inside",
+        ViolationKind::EntersSolid => "enters a solid",
         ViolationKind::SlipsThrough => "slips through",
     };
     json!({

@@ -24,6 +24,16 @@ use super::{print, print_json};
 pub(crate) struct Args {
     #[command(flatten)]
     input: InputArgs,
+    /// Queries of a path planner's benchmark in place of traces: a MovingAI .scen for a scene that is a .map. Each rope is tied
+    /// at a query's start; its free end goes straight to the goal, or along a shortest way from cell to cell
+    #[arg(
+        long, value_name = "FILE", requires = "scene",
+        conflicts_with_all = [
+            "traces", "anchor", "events", "engine", "adapter", "precision", "window", "keep_all", "stride", "simplify",
+            "on_violation",
+        ]
+    )]
+    queries: Option<PathBuf>,
     /// Where to write one row a trace: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -46,6 +56,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     interrupt::check()?;
     check_outputs(args)?;
     writing.end()?;
+    if let (Some(queries), Some(scene)) = (&args.queries, &args.input.scene) {
+        return super::queries::run(scene, queries, args.out.as_deref(), args.json);
+    }
     let start = Instant::now();
     let terms = args.trade.terms(&args.input.name(), args.input.model()?)?;
     let model = &terms.used;
@@ -103,10 +116,11 @@ fn check_outputs(args: &Args) -> Result<(), Failure> {
     let files = [
         ("--scene", &args.input.scene),
         ("--traces", &args.input.traces),
+        ("--queries", &args.queries),
         ("--out", &args.out),
         ("--events", &args.events),
     ];
-    for (i, (output, path)) in files.iter().enumerate().skip(2) {
+    for (i, (output, path)) in files.iter().enumerate().skip(3) {
         let Some(path) = path else { continue };
         let same = |other: &&(_, &Option<PathBuf>)| other.1.as_deref().is_some_and(|o| place(o) == place(path));
         if let Some((other, _)) = files[..i].iter().find(same) {

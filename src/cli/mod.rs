@@ -21,6 +21,7 @@ mod manual;
 mod named_scene;
 mod output;
 mod progress;
+mod queries;
 mod spread;
 mod study;
 mod summary;

@@ -105,8 +105,8 @@ impl<'m> LiveRope<'m> {
             let wall = wall as usize;
             return Err(AdvanceError::Touches { wall, ends: model.scene().ends(wall), from, to });
         }
-        if model.vertex_at(from).is_some() {
-            // The free end leaves a wall's end, at which the anchor is: a hair tells on which side.
+        if model.is_on_wall(from) {
+            // The free end leaves a wall, on which the anchor is: a hair tells on which side.
             self.at = settle(model, &Trace { id: 0, points: vec![from, to] }).point(0);
         }
         let leg = Leg { a0: self.at, a1: TracePoint::from(to) };

@@ -8,6 +8,7 @@
 use glam::{DAffine2, DVec2};
 
 use super::pen::Pen;
+use super::{Object, Wall};
 use crate::geometry::number;
 
 /// Without a tolerance, walls lie within the drawing's longer side divided by this, to three digits, of their curves.
@@ -20,11 +21,14 @@ const WALLS_MAX: f64 = 4_194_304.0;
 #[derive(Debug, Default)]
 pub(super) struct Outlines {
     pub(super) pieces: Vec<Piece>,
+    pub(super) objects: Vec<Object>,
 }
 
 /// A part of a drawing, in the scene's coordinates.
 #[derive(Debug)]
 pub(super) enum Piece {
+    /// What follows belongs to the next object.
+    Object,
     /// A line of its own begins here.
     Start(DVec2),
     /// Straight from where the last piece ends.
@@ -87,7 +91,8 @@ pub(super) fn direction(degrees: f64) -> DVec2 {
 
 /// What the curves of a drawing have become.
 pub(super) struct Flattened {
-    pub(super) walls: Vec<[DVec2; 2]>,
+    pub(super) objects: Vec<Object>,
+    pub(super) walls: Vec<Wall>,
     /// How many curves there are, and within what distance of them their walls lie.
     pub(super) curves: usize,
     pub(super) tolerance: f64,
@@ -107,6 +112,12 @@ impl Flattened {
 }
 
 impl Outlines {
+    /// Begins an object: what is drawn from now on is its own.
+    pub(super) fn begin(&mut self, object: Object) {
+        self.objects.push(object);
+        self.pieces.push(Piece::Object);
+    }
+
     /// A pen that draws here what it is told in other coordinates.
     pub(super) fn pen(&mut self, transform: DAffine2) -> Pen<'_> {
         Pen::new(self, transform)
@@ -126,6 +137,7 @@ impl Outlines {
         };
         for piece in &self.pieces {
             match piece {
+                Piece::Object => {}
                 Piece::Start(p) | Piece::Line(p) => add(*p, *p),
                 Piece::Curve(curve, end) => {
                     add(*end, *end);
@@ -148,9 +160,17 @@ impl Outlines {
         let side = self.bounds().map_or(0.0, |[low, high]| (high - low).max_element());
         let tolerance = tolerance.unwrap_or_else(|| rounded(side / PARTS_OF_SIDE));
         let mut walls = Vec::with_capacity(self.pieces.len());
+        // What is drawn before any object has begun belongs to one without a name.
+        let objects: Vec<Object> = [Object::default()].into_iter().chain(self.objects.iter().cloned()).collect();
+        let mut object = 0;
+        let mut wall = |object, ends| walls.push(Wall { ends, object, reversed: false });
         let (mut here, mut curves, mut curved) = (DVec2::ZERO, 0, 0.0);
         for piece in &self.pieces {
             let end = match piece {
+                Piece::Object => {
+                    object += 1;
+                    continue;
+                }
                 Piece::Start(end) => {
                     here = *end;
                     continue;
@@ -167,16 +187,16 @@ impl Outlines {
                     }
                     for k in 1..n as u32 {
                         let p = curve.at(f64::from(k) / n);
-                        walls.push([here, p]);
+                        wall(object, [here, p]);
                         here = p;
                     }
                     *end
                 }
             };
-            walls.push([here, end]);
+            wall(object, [here, end]);
             here = end;
         }
-        Ok(Flattened { walls, curves, tolerance })
+        Ok(Flattened { objects, walls, curves, tolerance })
     }
 }
 
@@ -231,10 +251,10 @@ mod tests {
     }
 
     /// How far `q` is from the nearest wall.
-    fn distance(walls: &[[DVec2; 2]], q: DVec2) -> f64 {
-        let to = |[a, b]: &[DVec2; 2]| {
-            let along = ((q - *a).dot(*b - *a) / (*b - *a).length_squared()).clamp(0.0, 1.0);
-            q.distance(*a + (*b - *a) * along)
+    fn distance(walls: &[Wall], q: DVec2) -> f64 {
+        let to = |&Wall { ends: [a, b], .. }: &Wall| {
+            let along = ((q - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            q.distance(a + (b - a) * along)
         };
         walls.iter().map(to).fold(f64::INFINITY, f64::min)
     }
@@ -271,7 +291,7 @@ mod tests {
                 assert!(far <= tolerance, "{curve:?}: {far} beyond {tolerance}");
                 // Not many times as many walls as needed.
                 assert!(walls.len() <= 8 || far > tolerance / 20.0, "{curve:?}: {far} for {tolerance}");
-                assert!(walls.windows(2).all(|w| w[0][1] == w[1][0]));
+                assert!(walls.windows(2).all(|w| w[0].ends[1] == w[1].ends[0]));
             }
         }
     }
@@ -282,11 +302,11 @@ mod tests {
         let mut pen = outlines.pen(DAffine2::IDENTITY);
         pen.ellipse(p(0.1, 0.2), p(0.3, 0.0), p(0.0, 0.3)).unwrap();
         let walls = outlines.flatten(Some(1e-3)).unwrap().walls;
-        assert_eq!(walls[0][0], walls[walls.len() - 1][1]);
-        assert_eq!(walls[0][0], p(0.1, 0.2) + p(0.3, 0.0));
+        assert_eq!(walls[0].ends[0], walls[walls.len() - 1].ends[1]);
+        assert_eq!(walls[0].ends[0], p(0.1, 0.2) + p(0.3, 0.0));
         // The quarters are points of it, as exact as sums are.
         for q in [p(0.1, 0.2 + 0.3), p(0.1 - 0.3, 0.2), p(0.1, 0.2 - 0.3)] {
-            assert!(walls.iter().any(|w| w[0] == q), "{q}");
+            assert!(walls.iter().any(|w| w.ends[0] == q), "{q}");
         }
     }
 

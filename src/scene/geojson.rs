@@ -3,8 +3,8 @@
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, JsonValue, Position};
 use glam::DVec2;
 
-use super::lines::{push_line, push_ring};
-use super::{Scene, excerpt, geographic};
+use super::lines::Lines;
+use super::{Object, Scene, excerpt, geographic};
 use crate::geometry::check_point;
 use crate::number::{self, VANISHES};
 use crate::read_error::{Fault, Place};
@@ -28,7 +28,7 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
         GeoJson::Feature(feature) => found.feature(&feature, 0)?,
         GeoJson::Geometry(geometry) => found.geometry(&geometry, &Place::default(), None)?,
     }
-    let mut scene = Scene::new(found.walls)?;
+    let mut scene = found.lines.scene()?;
     if let Some((anchor, _)) = found.anchor {
         scene = scene.with_anchor(anchor);
     }
@@ -85,7 +85,9 @@ fn syntax_fault(e: &serde_json::Error) -> Fault {
 /// What the features seen so far hold.
 #[derive(Default)]
 struct Found {
-    walls: Vec<[DVec2; 2]>,
+    lines: Lines,
+    /// What the feature says of itself.
+    object: Object,
     /// The anchor and the number of its feature.
     anchor: Option<(DVec2, usize)>,
 }
@@ -146,12 +148,14 @@ impl Found {
 
     /// Adds the walls of one line string.
     fn line(&mut self, positions: &[Position], place: &Place) -> Result<(), Fault> {
-        push_line(&mut self.walls, positions.iter().map(point_of), place)
+        self.lines.begin(self.object.clone());
+        self.lines.push_line(positions.iter().map(point_of), place)
     }
 
     fn polygon(&mut self, rings: &[Vec<Position>], place: &Place) -> Result<(), Fault> {
+        self.lines.begin_polygon(&self.object);
         let mut rings = rings.iter().enumerate();
-        rings.try_for_each(|(i, ring)| push_ring(&mut self.walls, ring.iter().map(point_of), &place.then("ring", i)))
+        rings.try_for_each(|(i, ring)| self.lines.push_ring(ring.iter().map(point_of), &place.then("ring", i)))
     }
 }
 

@@ -11,9 +11,11 @@ mod index;
 mod lines;
 mod model;
 mod movingai;
+mod object;
 mod pen;
 mod read;
 mod ros_map;
+mod sectors;
 mod svg;
 mod wkt;
 
@@ -25,7 +27,10 @@ use crate::geometry::{CoordinateFault, check_point};
 
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};
+pub use movingai::GridMap;
+pub use object::{Inside, Object, Wall};
 pub use read::{SceneOptions, Unknown, read_scene, read_scene_with};
+pub(crate) use sectors::{Sectors, by_angle};
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.
 ///
@@ -34,6 +39,9 @@ pub use read::{SceneOptions, Unknown, read_scene, read_scene_with};
 pub struct Scene {
     vertices: Vec<DVec2>,
     walls: Vec<[u32; 2]>,
+    objects: Vec<Object>,
+    /// Of each wall: the number of its object, and whether its outline goes from its second end to its first.
+    drawn: Vec<(u32, bool)>,
     anchor: Option<DVec2>,
     dropped: usize,
     y_down: bool,
@@ -59,9 +67,25 @@ impl Scene {
     /// # Ok::<(), tautline::geometry::CoordinateFault>(())
     /// ```
     pub fn new(walls: impl IntoIterator<Item = [DVec2; 2]>) -> Result<Self, CoordinateFault> {
-        let mut scene = Scene::default();
+        let walls = walls.into_iter().map(|ends| Wall { ends, object: 0, reversed: false });
+        Scene::of(vec![Object::default()], walls)
+    }
+
+    /// The same for the walls of several objects, in any order. O(walls).
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    ///
+    /// # Panics
+    ///
+    /// If a wall names an object that is not there.
+    pub fn of(objects: Vec<Object>, walls: impl IntoIterator<Item = Wall>) -> Result<Self, CoordinateFault> {
+        let count = objects.len();
+        let mut scene = Scene { objects, ..Scene::default() };
         let mut numbers = HashMap::new();
-        for ends in walls {
+        for Wall { ends, object, reversed } in walls {
+            assert!((object as usize) < count, "object {object} of {count}");
             let ends = [check_point(ends[0])?, check_point(ends[1])?];
             if ends[0] == ends[1] {
                 scene.dropped += 1;
@@ -74,6 +98,7 @@ impl Scene {
                 })
             });
             scene.walls.push(numbered);
+            scene.drawn.push((object, reversed));
         }
         Ok(scene)
     }
@@ -92,11 +117,17 @@ impl Scene {
         self
     }
 
-    /// The same scene with these walls between its vertices in place of its own.
-    pub(crate) fn with_walls(&self, walls: impl IntoIterator<Item = [u32; 2]>) -> Self {
-        let ends = walls.into_iter().map(|wall| wall.map(|v| self.vertices[v as usize]));
-        let Scene { vertices, walls, .. } = Scene::new(ends).expect("its vertices are sound");
-        Scene { vertices, walls, notes: self.notes.clone(), ..*self }
+    /// The same scene with other walls between its vertices in place of its own: each with the number of a wall of this scene
+    /// for which it stands, and whether it goes the other way.
+    pub(crate) fn with_walls(&self, walls: impl IntoIterator<Item = ([u32; 2], usize, bool)>) -> Self {
+        let stands = |(ends, wall, turned): ([u32; 2], usize, bool)| {
+            let (object, reversed) = self.drawn[wall];
+            Wall { ends: ends.map(|v| self.vertices[v as usize]), object, reversed: reversed != turned }
+        };
+        let objects = self.objects.clone();
+        let Scene { vertices, walls, objects, drawn, .. } =
+            Scene::of(objects, walls.into_iter().map(stands)).expect("its vertices are sound");
+        Scene { vertices, walls, objects, drawn, notes: self.notes.clone(), ..*self }
     }
 
     /// The ends of all walls, each once.
@@ -112,6 +143,22 @@ impl Scene {
     /// The endpoints of wall `wall`.
     pub fn ends(&self, wall: usize) -> [DVec2; 2] {
         self.walls[wall].map(|v| self.vertices[v as usize])
+    }
+
+    /// What the scene's file draws, each thing once; some of them may have no walls.
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// The number of the object to which wall `wall` belongs.
+    pub fn object_of(&self, wall: usize) -> usize {
+        self.drawn[wall].0 as usize
+    }
+
+    /// The endpoints of wall `wall`, in the direction of its object's outline.
+    pub fn outline(&self, wall: usize) -> [DVec2; 2] {
+        let [u, v] = self.ends(wall);
+        if self.drawn[wall].1 { [v, u] } else { [u, v] }
     }
 
     /// The anchor that the scene's file marks, if it marks one.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::{Scene, WallIndex};
-use crate::geometry::{CoordinateFault, Shown, between, check_point, forwards, higher, lower, orient, same_side};
+use super::{Scene, Sectors, WallIndex};
+use crate::geometry::{CoordinateFault, between, check_point, forwards, higher, lower, orient, same_side};
 
 /// Why a rope cannot be tied where the anchor is.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -18,25 +18,14 @@ pub enum AnchorError {
     /// Its coordinates cannot be computed with.
     #[error("the anchor: {0}")]
     Coordinate(#[from] CoordinateFault),
-    /// It stands in a wall, between its ends.
-    #[error(
-        "the anchor {} lies inside wall {wall}, from {} to {}; it may stand at a wall's end or off the walls",
-        Shown(*anchor), Shown(ends[0]), Shown(ends[1])
-    )]
-    InsideWall {
-        /// Where it stands.
-        anchor: DVec2,
-        /// Which wall, counted from 0.
-        wall: usize,
-        /// That wall's endpoints.
-        ends: [DVec2; 2],
-    },
 }
 
 /// A scene, its anchor, and the index of its walls.
 pub struct Model {
     walls: Arc<Walls>,
     anchor: DVec2,
+    /// Where the anchor stands on walls: the sectors between them, and which are solid.
+    border: Option<(Sectors, Vec<bool>)>,
 }
 
 /// What models with other anchors have in common.
@@ -52,29 +41,28 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// A missing anchor, one that exact arithmetic cannot take, or one inside a wall.
+    /// A missing anchor, and one that exact arithmetic cannot take.
     pub fn new(scene: Scene, anchor: Option<DVec2>) -> Result<Self, AnchorError> {
         let anchor = anchor.or(scene.anchor()).ok_or(AnchorError::Missing)?;
         let index = WallIndex::new(&scene);
         let numbers = scene.vertices().iter().zip(0..).map(|(p, v)| (p.to_array().map(f64::to_bits), v)).collect();
-        Model { walls: Arc::new(Walls { scene, index, numbers }), anchor }.tied(anchor)
+        Model { walls: Arc::new(Walls { scene, index, numbers }), anchor, border: None }.tied(anchor)
     }
 
-    /// The same with the rope tied at `anchor`; scene and index are shared. O(log walls + walls near it).
+    /// The same with the rope tied at `anchor`; scene and index are shared. O(log walls + walls near it), and the walls of the
+    /// solids on whose border it stands.
     ///
     /// # Errors
     ///
-    /// An anchor that exact arithmetic cannot take, or one inside a wall.
+    /// An anchor that exact arithmetic cannot take.
     pub fn tied(&self, anchor: DVec2) -> Result<Self, AnchorError> {
         let anchor = check_point(anchor)?;
-        let inside = |&wall: &u32| {
-            let [u, v] = self.scene().ends(wall as usize);
-            orient(u, v, anchor) == 0.0 && between(u, v, anchor)
-        };
-        match self.index().near(anchor, anchor).filter(inside).min().map(|wall| wall as usize) {
-            Some(wall) => Err(AnchorError::InsideWall { anchor, wall, ends: self.scene().ends(wall) }),
-            None => Ok(Model { walls: Arc::clone(&self.walls), anchor }),
-        }
+        let border = self.is_on_wall(anchor).then(|| {
+            let sectors = Sectors::new(self.scene(), self.index(), anchor);
+            let solid = sectors.solid(self.scene(), self.index());
+            (sectors, solid)
+        });
+        Ok(Model { walls: Arc::clone(&self.walls), anchor, border })
     }
 
     /// The walls and their ends.
@@ -104,10 +92,17 @@ impl Model {
     }
 
     /// A wall that the segment from `a` to `b` touches, its ends included. A wall that ends at `a` is none in the way unless
-    /// the segment runs along it, so that one can leave a wall's end. O(1) where no wall is near, else O(log walls + walls
-    /// near it).
+    /// the segment runs along it, so that one can leave a wall's end; nor is one on which the anchor stands, if that is `a`,
+    /// unless the segment leads into what is solid behind it. O(1) where no wall is near, else O(log walls + walls near it).
     pub fn touched(&self, a: DVec2, b: DVec2) -> Option<u32> {
+        let is_tied = a == self.anchor && self.border.is_some();
+        if is_tied && self.leads_into_solid(b) {
+            return self.wall_at(a);
+        }
         let touches = |u: DVec2, v: DVec2| {
+            if is_tied && a != u && a != v && orient(u, v, a) == 0.0 && between(u, v, a) {
+                return orient(u, v, b) == 0.0;
+            }
             if let Some(end) = [(u, v), (v, u)].iter().find(|e| e.0 == a).map(|e| e.1) {
                 return orient(a, end, b) == 0.0 && !forwards(end, a, b);
             }
@@ -116,6 +111,31 @@ impl Model {
         };
         let visit = |wall, [u, v]: [DVec2; 2]| if touches(u, v) { Break(wall) } else { Continue(()) };
         self.index().visit(lower(a, b), higher(a, b), visit).break_value()
+    }
+
+    /// Whether `p` stands on a wall: at one of its ends or between them. O(log walls + walls near it).
+    pub fn is_on_wall(&self, p: DVec2) -> bool {
+        self.wall_at(p).is_some()
+    }
+
+    /// The first wall that ends at `p` or on which it stands.
+    pub(crate) fn wall_at(&self, p: DVec2) -> Option<u32> {
+        let is_on = |&wall: &u32| {
+            let [u, v] = self.scene().ends(wall as usize);
+            p == u || p == v || orient(u, v, p) == 0.0 && between(u, v, p)
+        };
+        self.index().near(p, p).filter(is_on).min()
+    }
+
+    /// Which sectors between the walls on which the anchor stands are solid; `None` if it stands on none.
+    pub(crate) fn border(&self) -> Option<(&Sectors, &[bool])> {
+        self.border.as_ref().map(|(sectors, solid)| (sectors, solid.as_slice()))
+    }
+
+    /// Whether the way from the anchor towards `b`, which is not along a wall, leads into a solid on whose border it stands.
+    fn leads_into_solid(&self, b: DVec2) -> bool {
+        let Some((sectors, solid)) = &self.border else { return false };
+        b != self.anchor && sectors.find(b).is_err_and(|sector| solid[sector])
     }
 
     /// The lowest and highest x and y of all vertices and the anchor.

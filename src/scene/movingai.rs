@@ -1,20 +1,69 @@
 //! Scenes as MovingAI grid maps: the borders between free and blocked cells are the walls.
 
+use std::path::Path;
+
 use glam::DVec2;
 
-use super::cells::{SIDE_MAX, borders};
+use super::cells::{self, SIDE_MAX, borders};
 use super::{Scene, excerpt};
-use crate::read_error::{Fault, Place};
+use crate::read_error::{Fault, Place, ReadError};
+use crate::read_file::{SCENE_MAX, read_text};
 
 /// Reads a map in time linear in its cells.
 ///
 /// Cell (column, row) is the unit square from (column, row) to (column + 1, row + 1), rows downwards as in the file.
 /// The walls' order is that of [`borders`].
 pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
-    let grid = Grid::parse(text)?;
-    let blocked = |x, y| grid.blocked(x, y);
-    let walls = borders(grid.width, grid.height(), &blocked);
-    Ok(Scene::new(walls.map(|ends| ends.map(|[x, y]| DVec2::new(x as f64, y as f64))))?.with_y_down())
+    Grid::parse(text)?.scene()
+}
+
+/// A MovingAI grid map: which cells are blocked. Cell (column, row) is the unit square from (column, row) to
+/// (column + 1, row + 1); rows are counted downwards as in the file.
+#[derive(Debug, Clone)]
+pub struct GridMap {
+    width: usize,
+    height: usize,
+    /// Row by row.
+    blocked: Vec<bool>,
+    scene: Scene,
+}
+
+impl GridMap {
+    /// Reads the map in `path`, in time and memory linear in its cells.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be opened, and contents that are not a map, with their place.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let text = read_text(path, SCENE_MAX)?;
+        let read = || {
+            let grid = Grid::parse(&text)?;
+            let (width, height) = (grid.width, grid.height());
+            let blocked = (0..width * height).map(|cell| grid.blocked(cell % width, cell / width)).collect();
+            Ok(GridMap { width, height, blocked, scene: grid.scene()? })
+        };
+        read().map_err(|fault: Fault| fault.in_file(path))
+    }
+
+    /// How many columns there are.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// How many rows there are.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Whether a cell is blocked; what lies around the map is.
+    pub fn is_blocked(&self, column: usize, row: usize) -> bool {
+        column >= self.width || row >= self.height || self.blocked[row * self.width + column]
+    }
+
+    /// The walls: the borders between blocked and free cells.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
 }
 
 /// The cells: `rows[row][column]`, all rows `width` long, every character one that is known.
@@ -26,6 +75,12 @@ struct Grid<'a> {
 impl<'a> Grid<'a> {
     fn height(&self) -> usize {
         self.rows.len()
+    }
+
+    fn scene(&self) -> Result<Scene, Fault> {
+        let blocked = |x, y| self.blocked(x, y);
+        let walls = borders(self.width, self.height(), &blocked);
+        Ok(cells::scene(walls, |[x, y]| DVec2::new(x as f64, y as f64), false)?.with_y_down())
     }
 
     fn blocked(&self, column: usize, row: usize) -> bool {

@@ -122,7 +122,7 @@ mod tests {
             outlines.pen(DAffine2::IDENTITY).polyline(&[p(0.3, 0.1), p(1.0, 0.0), p(1.0, 1.0), last], true).unwrap();
             let walls = outlines.flatten(None).unwrap().walls;
             assert_eq!(walls.len(), count);
-            assert_eq!(walls[count - 1][1], walls[0][0]);
+            assert_eq!(walls[count - 1].ends[1], walls[0].ends[0]);
         }
     }
 

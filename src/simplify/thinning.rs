@@ -14,6 +14,8 @@ use crate::visibility::Visibility;
 /// A wall, or what stands for several.
 struct Wall {
     ends: [u32; 2],
+    /// Whether it goes against the first of those for which it stands.
+    turned: bool,
     /// Whether it may be moved to its left, and to its right.
     yields: [bool; 2],
     /// The vertices that went for it.
@@ -62,7 +64,7 @@ impl<'a> Thinning<'a> {
         let (vertices, walls) = (model.vertices(), model.scene().walls());
         let meeting = candidates(model, anchors);
         let yields = yielding(visibility, anchors, walls, |v| meeting[v as usize].is_some());
-        let wall = |(&ends, yields)| Some(Wall { ends, yields, replaced: Vec::new() });
+        let wall = |(&ends, yields)| Some(Wall { ends, turned: false, yields, replaced: Vec::new() });
         let apart = anchors.iter().copied().filter(|&anchor| model.vertex_at(anchor).is_none());
         Thinning {
             vertices,
@@ -89,9 +91,11 @@ impl<'a> Thinning<'a> {
         }
     }
 
-    /// The walls that are left, in the order of the first of those for which they stand.
-    pub(super) fn walls(&self) -> impl Iterator<Item = [u32; 2]> {
-        self.walls.iter().flatten().map(|wall| wall.ends)
+    /// The walls that are left, in the order of the first of those for which they stand: that one's number, and whether they
+    /// go against it.
+    pub(super) fn walls(&self) -> impl Iterator<Item = ([u32; 2], usize, bool)> {
+        let left = |(number, wall): (usize, &Option<Wall>)| wall.as_ref().map(|wall| (wall.ends, number, wall.turned));
+        self.walls.iter().enumerate().filter_map(left)
     }
 
     /// Of a vertex that may go: the walls that meet there, and their other ends.
@@ -142,6 +146,9 @@ impl<'a> Thinning<'a> {
             return;
         }
         let [kept, gone] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
+        // The new wall goes from u over v to w.
+        let first = self.walls[kept as usize].as_ref().expect("walls that meet are there");
+        let turned = first.turned != (if kept == pair[0] { first.ends[1] != v } else { first.ends[0] != v });
         let [mut few, mut many] =
             pair.map(|wall| self.walls[wall as usize].take().expect("walls that meet are there").replaced);
         if few.len() > many.len() {
@@ -149,7 +156,7 @@ impl<'a> Thinning<'a> {
         }
         many.append(&mut few);
         many.push(v);
-        self.walls[kept as usize] = Some(Wall { ends: [u, w], yields, replaced: many });
+        self.walls[kept as usize] = Some(Wall { ends: [u, w], turned, yields, replaced: many });
         self.joined.insert([u.min(w), u.max(w)]);
         self.meeting[v as usize] = None;
         self.near.remove(v, self.vertices[v as usize]);
@@ -178,8 +185,18 @@ fn candidates(model: &Model, anchors: &[DVec2]) -> Vec<Option<[u32; 2]>> {
             *count += 1;
         }
     }
-    for anchor in anchors.iter().filter_map(|&anchor| model.vertex_at(anchor)) {
-        ends[anchor as usize].1 = 0;
+    for &anchor in anchors {
+        if let Some(vertex) = model.vertex_at(anchor) {
+            ends[vertex as usize].1 = 0;
+            continue;
+        }
+        // Nor does a wall move in the middle of which one is tied.
+        for wall in model.index().near(anchor, anchor) {
+            let [u, v] = model.scene().ends(wall as usize);
+            if orient(u, v, anchor) == 0.0 {
+                model.scene().walls()[wall as usize].iter().for_each(|&v| ends[v as usize].1 = 0);
+            }
+        }
     }
     let asked = model.scene().walls().iter().zip(0..);
     let clean: Vec<bool> =

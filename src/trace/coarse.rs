@@ -69,8 +69,8 @@ fn thin(model: &Model, points: &mut Vec<glam::DVec2>, k: usize, coarse: &mut Coa
     while from < last {
         let to = last.min(from + k);
         let end = points[to];
-        // From a wall's end it could lead to the other side of the walls that meet there.
-        let is_clear = || model.is_clear(start, end) && model.vertex_at(start).is_none();
+        // From a wall it could lead to the other side of the walls that meet there.
+        let is_clear = || model.is_clear(start, end) && !model.is_on_wall(start);
         let first = if to - from == 1 || is_clear() {
             to
         } else {

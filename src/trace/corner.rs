@@ -5,13 +5,14 @@ use std::cmp::Ordering;
 use glam::DVec2;
 
 use crate::geometry::{Hair, Turn, orient};
-use crate::scene::Model;
+use crate::scene::{Model, Sectors, by_angle};
 
-/// The directions of the walls at one point, as points towards which they go, sorted counter-clockwise.
+/// The sectors between the walls at one point.
 #[derive(Debug, Clone)]
 pub(super) struct Corner {
-    at: DVec2,
-    towards: Vec<DVec2>,
+    sectors: Sectors,
+    /// Which of them are solid: of the anchor, from where a trace starts. Whoever comes from elsewhere comes from what is free.
+    solid: Vec<bool>,
 }
 
 /// The way along which a trace comes to a corner or leaves it, as seen from the corner.
@@ -38,39 +39,39 @@ enum Place {
 impl Corner {
     /// The walls that end at `at` or pass through it; found through the model's index.
     pub(super) fn new(model: &Model, at: DVec2) -> Corner {
-        let mut towards = Vec::new();
-        for wall in model.index().near(at, at) {
-            let [u, v] = model.scene().ends(wall as usize);
-            if orient(u, v, at) == 0.0 {
-                towards.extend([u, v].into_iter().filter(|&end| end != at));
+        match model.border() {
+            Some((sectors, solid)) if at == model.anchor() => {
+                Corner { sectors: sectors.clone(), solid: solid.to_vec() }
             }
+            _ => Corner { sectors: Sectors::new(model.scene(), model.index(), at), solid: Vec::new() },
         }
-        towards.sort_by(|&p, &q| by_angle(at, p, q));
-        towards.dedup_by(|p, q| by_angle(at, *p, *q).is_eq());
-        // Thousands of walls may lie on each other here, and at thousands of other vertices that a step passes.
-        towards.shrink_to_fit();
-        Corner { at, towards }
     }
 
     /// Whether a wall goes from here towards `p`.
     pub(super) fn has_wall_towards(&self, p: DVec2) -> bool {
-        self.towards.binary_search_by(|&d| by_angle(self.at, d, p)).is_ok()
+        self.sectors.find(p).is_ok()
     }
 
     /// The way towards `p`. Where a wall goes that way, `side` says on which side of it (as seen from here) the way
     /// lies.
     pub(super) fn way(&self, p: DVec2, side: Turn) -> Way {
-        let count = self.towards.len();
-        match self.towards.binary_search_by(|&d| by_angle(self.at, d, p)) {
+        let count = self.sectors.towards.len();
+        match self.sectors.find(p) {
             Ok(i) if side == Turn::Left => Way { towards: p, sector: i, place: Place::Start },
             Ok(i) => Way { towards: p, sector: (i + count - 1) % count, place: Place::End },
-            Err(i) => Way { towards: p, sector: (i + count - 1) % count, place: Place::Inside },
+            Err(sector) => Way { towards: p, sector, place: Place::Inside },
         }
     }
 
-    /// Some way: left along the first wall.
+    /// Whether a trace that starts here along `way` starts into a solid.
+    pub(super) fn is_solid(&self, way: Way) -> bool {
+        self.solid.get(way.sector).is_some_and(|&solid| solid)
+    }
+
+    /// Some way, if there is one into what is free: left along the first wall that has it there.
     pub(super) fn any_way(&self) -> Way {
-        Way { towards: self.towards[0], sector: 0, place: Place::Start }
+        let sector = self.solid.iter().position(|&solid| !solid).unwrap_or(0);
+        Way { towards: self.sectors.towards[sector], sector, place: Place::Start }
     }
 
     /// Whether one can pass from `from` to `to` without crossing a wall that meets here.
@@ -81,7 +82,7 @@ impl Corner {
     /// Whether passing from `from` to `to` goes all the way round the end of a lone wall, from one of its sides to the
     /// other.
     pub(super) fn rounds_tip(&self, from: Way, to: Way) -> bool {
-        self.towards.len() == 1
+        self.sectors.towards.len() == 1
             && matches!((from.place, to.place), (Place::Start, Place::End) | (Place::End, Place::Start))
     }
 
@@ -94,8 +95,8 @@ impl Corner {
         let ccw = connected && self.precedes(from, to);
         let (first, second) = if ccw { (from, to) } else { (to, from) };
         let toward = if ccw { Turn::Left } else { Turn::Right };
-        let area = orient(self.at, first.towards, second.towards);
-        let same_way = area == 0.0 && by_angle(self.at, from.towards, to.towards).is_eq();
+        let area = orient(self.sectors.at, first.towards, second.towards);
+        let same_way = area == 0.0 && by_angle(self.sectors.at, from.towards, to.towards).is_eq();
         let hair = |away, turn| Hair { witness: from.towards, away, turn };
         if connected && self.rounds_tip(from, to) {
             vec![hair(true, toward.reversed()), hair(true, toward)]
@@ -113,34 +114,19 @@ impl Corner {
     fn precedes(&self, p: Way, q: Way) -> bool {
         match p.place.cmp(&q.place) {
             Ordering::Equal if p.place == Place::Inside => {
-                let start = self.towards[p.sector];
+                let start = self.sectors.towards[p.sector];
                 // Angles from the sector's start, in (0, 360) degrees: first those of less than a half turn.
                 let half = |w: DVec2| {
-                    let side = orient(self.at, start, w);
+                    let side = orient(self.sectors.at, start, w);
                     if side > 0.0 { 0 } else { 1 + u8::from(side < 0.0) }
                 };
                 (half(p.towards).cmp(&half(q.towards)))
-                    .then_with(|| 0.0f64.total_cmp(&(orient(self.at, p.towards, q.towards) + 0.0)))
+                    .then_with(|| 0.0f64.total_cmp(&(orient(self.sectors.at, p.towards, q.towards) + 0.0)))
                     .is_lt()
             }
             order => order.is_lt(),
         }
     }
-}
-
-/// Compares the directions from `at` to `p` and to `q` by their angle in [0, 360) degrees, exactly.
-fn by_angle(at: DVec2, p: DVec2, q: DVec2) -> Ordering {
-    let lower_half = |p: DVec2| p.y < at.y || (p.y == at.y && p.x < at.x);
-    (lower_half(p).cmp(&lower_half(q))).then_with(|| {
-        let side = orient(at, p, q);
-        if side > 0.0 {
-            Ordering::Less
-        } else if side < 0.0 {
-            Ordering::Greater
-        } else {
-            Ordering::Equal
-        }
-    })
 }
 
 #[cfg(test)]
@@ -154,6 +140,6 @@ mod tests {
         let walls = (1..=1000).map(|k| [at, DVec2::new(f64::from(k), 0.0)]);
         let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(0.0, -1.0))).unwrap();
         let corner = Corner::new(&model, at);
-        assert_eq!((corner.towards.len(), corner.towards.capacity()), (1, 1));
+        assert_eq!((corner.sectors.towards.len(), corner.sectors.towards.capacity()), (1, 1));
     }
 }

@@ -1,4 +1,4 @@
-//! Hairs: on which side a settled trace passes each of the vertices that it touches.
+//! Hairs: on which side a settled trace passes the walls where it touches them.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use super::{SettledTrace, ViolationKind};
 use crate::geometry::Hair;
 use crate::scene::Model;
 
-/// Gives every point of `settled` that touches a vertex its hair, and adds points where two are needed. `touching` are
+/// Gives every point of `settled` that touches a wall its hair, and adds points where two are needed. `touching` are
 /// their indices, ascending.
 pub(super) fn pluck(model: &Model, settled: &mut SettledTrace, touching: &[u32]) {
     pluck_stays(model, settled, &stays(model, &settled.points, touching));
@@ -43,21 +43,20 @@ pub(super) fn pluck_stays(model: &Model, settled: &mut SettledTrace, stays: &[St
 /// The stays that touch, in order, and those right before and after them; what else a trace does is of no matter.
 fn stays(model: &Model, points: &[DVec2], touching: &[u32]) -> Vec<Stay> {
     let mut stays: Vec<Stay> = Vec::new();
-    // One for each vertex, however often it is touched: thousands of walls may meet there.
-    let mut corners: HashMap<u32, Rc<Corner>> = HashMap::new();
+    // One for each place, however often it is touched: thousands of walls may meet there.
+    let mut corners: HashMap<[u64; 2], Rc<Corner>> = HashMap::new();
     let beside = |i: usize| Stay { at: points[i], first: i, end: i + 1, corner: None };
     let mut rest = touching;
     while let Some(&first) = rest.first() {
         let first = first as usize;
         let at = points[first];
-        // Whoever stays at a vertex touches it all the while.
+        // Whoever stays at a place touches it all the while.
         let length = points[first..].iter().take_while(|&&p| p == at).count();
         let end = first + length;
         if first > 0 && stays.last().is_none_or(|last| last.end < first) {
             stays.push(beside(first - 1));
         }
-        let vertex = model.vertex_at(at).expect("what is touched is a vertex");
-        let corner = corners.entry(vertex).or_insert_with(|| Rc::new(Corner::new(model, at)));
+        let corner = corners.entry(at.to_array().map(f64::to_bits)).or_insert_with(|| Rc::new(Corner::new(model, at)));
         stays.push(Stay { at, first, end, corner: Some(Rc::clone(corner)) });
         rest = &rest[length..];
         if end < points.len() && rest.first().is_none_or(|&next| next as usize > end) {
@@ -88,25 +87,28 @@ impl Plucker<'_> {
                 // The trace never leaves this point: any side will do.
                 (None, None) => (corner.any_way(), corner.any_way()),
             };
-            if !corner.connects(from, to) {
-                let at = stays[i].at;
-                let walls = self.model.index().near(at, at);
-                let wall = walls.filter(|&w| self.model.scene().ends(w as usize).contains(&at)).min();
-                self.slips(stays[i].end, wall.expect("a corner has walls"));
+            let at = stays[i].at;
+            // Only a trace's start can be in a solid that it has not entered before.
+            if i == 0 && corner.is_solid(from) && stays.len() > 1 {
+                self.breaks(ViolationKind::EntersSolid, at, stays[i].end);
+            } else if !corner.connects(from, to) {
+                let is_end = self.model.vertex_at(at).is_some();
+                let kind = if is_end { ViolationKind::SlipsThrough } else { ViolationKind::Crosses };
+                self.breaks(kind, at, stays[i].end);
             }
             chosen.push((i as u32, corner.hairs(from, to)));
         }
     }
 
-    /// Notes that the step which goes on to point `next` does so on the wrong side of `wall`.
-    fn slips(&mut self, next: usize, wall: u32) {
+    /// Notes that the step which goes on from `at` to point `next` does so on the wrong side of the walls there.
+    fn breaks(&mut self, kind: ViolationKind, at: DVec2, next: usize) {
+        let wall = self.model.wall_at(at).expect("a corner has walls");
         let settled = &mut *self.settled;
         let step = settled.step(next);
         let to = (next..settled.points.len()).find(|&i| settled.ends_step(i)).unwrap_or(next);
         let from = (0..to).rev().find(|&i| settled.ends_step(i)).filter(|_| step > 0);
         let from = from.map_or(self.model.anchor(), |i| settled.points[i]);
-        let found =
-            violation(self.model, settled.id, step, ViolationKind::SlipsThrough, wall, [from, settled.points[to]]);
+        let found = violation(self.model, settled.id, step, kind, wall, [from, settled.points[to]]);
         settled.broken.note(found);
     }
 

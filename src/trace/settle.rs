@@ -1,9 +1,9 @@
 //! Settling a trace: checking its steps against the walls, and deciding on which side it passes the wall ends that it
 //! touches.
 //!
-//! A trace may stand exactly on a vertex, pass exactly through one, or slide along walls from end to end. It then
-//! counts as passing a hair off the walls, on the side that it comes from and goes on to; where both sides would do, on
-//! the left. Settled traces need no further thought: their points carry their [`Hair`](crate::geometry::Hair).
+//! A trace may stand anywhere on a wall, pass exactly through a vertex, or slide along walls. It then counts as passing a
+//! hair off the walls, on the side that it comes from and goes on to; from an anchor on a solid's border, on the free
+//! side; where both sides would do, on the left. Settled traces need no further thought: their points carry their [`Hair`](crate::geometry::Hair).
 
 use std::ops::ControlFlow::Continue;
 
@@ -18,7 +18,7 @@ use crate::scene::Model;
 /// How many steps share one look at the walls. Most looks find none; one that does is followed by a look for each step.
 const STEPS_PER_LOOK: usize = 16;
 
-/// Checks `trace` against the model's walls and settles on which side it passes the vertices that it touches.
+/// Checks `trace` against the model's walls and settles on which side it passes the walls that it touches.
 ///
 /// O(points + walls near them), through the model's index.
 ///
@@ -55,7 +55,7 @@ pub fn settle_owned(model: &Model, mut trace: Trace) -> SettledTrace {
 ///
 /// If the trace has no point.
 pub(crate) fn settle_clear(model: &Model, mut trace: Trace) -> SettledTrace {
-    if model.vertex_at(model.anchor()).is_some() {
+    if model.border().is_some() {
         // The points at the anchor need hairs.
         return settle_owned(model, trace);
     }
@@ -66,8 +66,7 @@ pub(crate) fn settle_clear(model: &Model, mut trace: Trace) -> SettledTrace {
     layout.settle(model, trace.id, trace.points)
 }
 
-/// The first step that breaks the rules of a way that starts at its first point, which touches no wall or is a wall's end,
-/// wherever the anchor is.
+/// The first step that breaks the rules of a way that starts at its first point, wherever the anchor is.
 ///
 /// # Panics
 ///
@@ -83,7 +82,7 @@ pub(crate) fn first_violation(model: &Model, way: Trace) -> Option<Violation> {
 pub(super) struct Layout {
     /// Points that are not the trace's own, with their indices among the settled points; ascending.
     pub(super) inserted: Vec<(u32, DVec2)>,
-    /// Indices of the settled points that stand on vertices, ascending.
+    /// Indices of the settled points that stand on walls, ascending.
     pub(super) touching: Vec<u32>,
     pub(super) broken: Broken,
 }
@@ -116,7 +115,7 @@ impl Layout {
         let mut layout = Layout::default();
         if first != anchor {
             layout.inserted.push((0, anchor));
-            if model.vertex_at(anchor).is_some() {
+            if model.is_on_wall(anchor) {
                 layout.touching.push(0);
             }
         }
@@ -129,18 +128,14 @@ impl Layout {
         let mut passed: Vec<DVec2> = Vec::new();
         let mut touches = false;
         let _ = model.index().visit::<()>(lower(a, b), higher(a, b), |wall, [u, v]| {
-            touches |= b == u || b == v;
-            let mut violate = |kind| self.broken.note(violation(model, trace.id, step, kind, wall, [a, b]));
             let (from_a, from_b) = (orient(u, v, a), orient(u, v, b));
-            if from_b == 0.0 && between(u, v, b) && model.vertex_at(b).is_none() {
-                violate(ViolationKind::EndsInside);
-            }
+            touches |= b == u || b == v || from_b == 0.0 && between(u, v, b);
             if a == b || same_side(from_a, from_b) {
                 return Continue(());
             }
             let (to_u, to_v) = (orient(a, b, u), orient(a, b, v));
             if opposite(from_a, from_b) && opposite(to_u, to_v) {
-                violate(ViolationKind::Crosses);
+                self.broken.note(violation(model, trace.id, step, ViolationKind::Crosses, wall, [a, b]));
             }
             passed
                 .extend([(to_u, u), (to_v, v)].into_iter().filter(|&(s, w)| s == 0.0 && between(a, b, w)).map(|p| p.1));

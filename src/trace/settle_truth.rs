@@ -22,7 +22,7 @@ fn settle_plainly(model: &Model, trace: &Trace) -> SettledTrace {
         let i = settled.points.len() as u32;
         settled.points.push(at);
         settled.added.extend((!ends_step).then_some(i));
-        touching.push(model.vertex_at(at).is_some());
+        touching.push(is_on_wall(model, at));
     };
     if trace.points[0] != model.anchor() {
         add(&mut settled, model.anchor(), false);
@@ -68,19 +68,13 @@ fn step_plainly(
         if u.min(v).cmpgt(a.max(b)).any() || u.max(v).cmplt(a.min(b)).any() {
             continue;
         }
-        let mut violate = |kind| {
-            settled.broken.note(violation(model, trace.id, step, kind, wall as u32, [a, b]));
-        };
         let (from_a, from_b) = (orient(u, v, a), orient(u, v, b));
-        if from_b == 0.0 && between(u, v, b) && model.vertex_at(b).is_none() {
-            violate(ViolationKind::EndsInside);
-        }
         if a == b || same_side(from_a, from_b) {
             continue;
         }
         let (to_u, to_v) = (orient(a, b, u), orient(a, b, v));
         if opposite(from_a, from_b) && opposite(to_u, to_v) {
-            violate(ViolationKind::Crosses);
+            settled.broken.note(violation(model, trace.id, step, ViolationKind::Crosses, wall as u32, [a, b]));
         }
         passed.extend([(to_u, u), (to_v, v)].into_iter().filter(|&(s, w)| s == 0.0 && between(a, b, w)).map(|p| p.1));
     }
@@ -98,12 +92,17 @@ fn step_plainly(
     passed
 }
 
-/// Whether a step crosses a wall or ends inside one.
+/// Whether a point stands on a wall, its ends included.
+fn is_on_wall(model: &Model, p: DVec2) -> bool {
+    let mut walls = (0..model.scene().walls().len()).map(|wall| model.scene().ends(wall));
+    walls.any(|[u, v]| p == u || p == v || orient(u, v, p) == 0.0 && between(u, v, p))
+}
+
+/// Whether a step crosses a wall from one side to the other.
 fn breaks(model: &Model, a: DVec2, b: DVec2) -> bool {
     (0..model.scene().walls().len()).map(|wall| model.scene().ends(wall)).any(|[u, v]| {
         let (from_a, from_b) = (orient(u, v, a), orient(u, v, b));
-        let ends_inside = from_b == 0.0 && between(u, v, b) && model.vertex_at(b).is_none();
-        ends_inside || opposite(from_a, from_b) && opposite(orient(a, b, u), orient(a, b, v))
+        opposite(from_a, from_b) && opposite(orient(a, b, u), orient(a, b, v))
     })
 }
 
@@ -184,7 +183,7 @@ fn agrees(kind: Kind, scale: i32, walls: &[Numbers], moves: &[(Numbers, u8)]) {
     let trace = Trace { id: 3, points };
     let truth = settle_plainly(&model, &trace);
     assert_eq!(settle(&model, &trace), truth);
-    // Steps that slip between walls at their ends are the only ones that break the rules without crossing or ending inside.
+    // Steps that leave a wall on the wrong side are the only others that break the rules.
     let steps = std::iter::once(model.anchor()).chain(trace.points.iter().copied()).zip(trace.points.iter().copied());
     let broken: Vec<u32> = steps.zip(0..).filter(|&((a, b), _)| breaks(&model, a, b)).map(|(_, step)| step).collect();
     let counted = &truth.broken.steps;

@@ -9,20 +9,20 @@ use crate::geometry::{Hair, Shown, TracePoint, higher, lower};
 /// What a trace does that a rope among solid walls cannot follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ViolationKind {
-    /// The step crosses a wall.
+    /// The step crosses a wall, or leaves one on which the trace stood to the side from which it did not come.
     Crosses,
-    /// The step ends inside a wall, between its ends.
-    EndsInside,
     /// The step leads through the end of a wall from one side of the walls that meet there to another.
     SlipsThrough,
+    /// The step leads from an anchor on the border of a solid into it.
+    EntersSolid,
 }
 
 impl ViolationKind {
     fn verb(self) -> &'static str {
         match self {
             ViolationKind::Crosses => "crosses",
-            ViolationKind::EndsInside => "ends inside",
             ViolationKind::SlipsThrough => "slips between the walls at the end of",
+            ViolationKind::EntersSolid => "leads from the anchor into the solid behind",
         }
     }
 }

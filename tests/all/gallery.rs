@@ -95,6 +95,8 @@ const CLAIMS: &[Claimed] = &[
         &[(2, Wrap, [3.0, 2.0], Right), (3, Wrap, [6.0, 1.0], Right)],
         &[([3.0, 2.0], Right), ([6.0, 1.0], Right)],
     ),
+    ("touching-a-tip", &[(1, Wrap, [4.0, 1.0], Left)], &[([4.0, 1.0], Left)]),
+    ("touching-the-middle", &[(1, Wrap, [3.0, 2.0], Right)], &[([3.0, 2.0], Right)]),
     (
         "crossing-walls",
         &[(1, Wrap, [3.0, 2.0], Right), (2, Wrap, [6.0, 2.0], Right)],

@@ -17,6 +17,7 @@ mod gallery;
 mod golden;
 mod live;
 mod pictures;
+mod pushed;
 mod random;
 mod required;
 mod scenes;

@@ -155,10 +155,10 @@ fn lawless_traces_are_lawful_until_they_cross_a_wall() {
                 assert_eq!(run(&mut Cpu::new(model), std::slice::from_ref(settled)), std::slice::from_ref(&truth));
                 let Some(violation) = settled.violation() else { return };
                 assert_eq!((truth.status, truth.steps), (Status::Violation, trace.points.len() as u64 - 1));
-                // The step before may pass a vertex on another side when the trace does not go on from there.
+                // The step before may pass a wall on another side when the trace does not go on from there.
                 let Some(kept) = violation.step.checked_sub(1).filter(|&k| k > 0) else { return };
                 let start = Trace { id: 0, points: trace.points[..kept].to_vec() };
-                if model.vertex_at(trace.points[kept - 1]).is_some() {
+                if model.is_on_wall(trace.points[kept - 1]) {
                     return;
                 }
                 let lawful = settle(model, &start);

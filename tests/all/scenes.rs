@@ -55,13 +55,13 @@ pub(crate) const KINDS: [Kind; 12] = [
 pub(crate) struct Recipe {
     pub(crate) kind: Kind,
     walls: Vec<[i16; 4]>,
-    /// Each a displacement, and, for some, a vertex to stand on instead.
+    /// Each a displacement, and, for some, a vertex or the middle of a wall to stand on instead.
     moves: Vec<(i16, i16, Option<u16>)>,
-    /// Whether the anchor stands at a wall's end.
-    anchored: bool,
+    /// Whether the anchor stands at a wall's end or in its middle.
+    anchored: Option<bool>,
 }
 
-/// Recipes of one kind; `touching` traces go to vertices often.
+/// Recipes of one kind; `touching` traces go to vertices and to middles of walls often.
 pub(crate) fn recipe(kind: Kind, touching: bool) -> impl Strategy<Value = Recipe> {
     let wall = prop::array::uniform4(any::<i16>());
     let vertex = if touching {
@@ -70,24 +70,39 @@ pub(crate) fn recipe(kind: Kind, touching: bool) -> impl Strategy<Value = Recipe
         Just(None).boxed()
     };
     let step = (any::<i16>(), any::<i16>(), vertex);
-    (prop::collection::vec(wall, 0..28), prop::collection::vec(step, 0..50), prop::bool::weighted(0.15))
+    let anchored = prop::option::weighted(0.2, any::<bool>());
+    (prop::collection::vec(wall, 0..28), prop::collection::vec(step, 0..50), anchored)
         .prop_map(move |(walls, moves, anchored)| Recipe { kind, walls, moves, anchored })
+}
+
+/// The middle of a wall; on lattices it lies on the wall exactly.
+fn middle([u, v]: [DVec2; 2]) -> DVec2 {
+    u / 2.0 + v / 2.0
+}
+
+/// A vertex or the middle of a wall, if there is one.
+fn touched(model: &Model, number: u16) -> Option<DVec2> {
+    let (vertices, number) = (model.vertices(), usize::from(number));
+    if vertices.is_empty() {
+        return None;
+    }
+    let walls = model.scene().walls().len();
+    Some(if number % 4 == 3 {
+        middle(model.scene().ends(number / 4 % walls))
+    } else {
+        vertices[number / 4 % vertices.len()]
+    })
 }
 
 impl Recipe {
     pub(crate) fn model(&self) -> Model {
         let walls: Vec<[DVec2; 2]> = self.walls.iter().flat_map(|&w| self.walls_of(w)).collect();
-        let anchor = match walls.first() {
-            Some(wall) if self.anchored => wall[0],
+        let anchor = match (walls.first(), self.anchored) {
+            (Some(wall), Some(true)) => wall[0],
+            (Some(wall), Some(false)) => middle(*wall),
             _ => self.placed(if self.kind == Kind::Needles { [-1.5, 0.031] } else { [0.013, 0.017] }),
         };
-        let scene = Scene::new(walls).unwrap();
-        // An anchor inside a wall is refused; a wall's end is as good a place.
-        let end = scene.vertices().first().copied();
-        Model::new(scene.clone(), Some(anchor)).or_else(|_| Model::new(scene, end)).unwrap_or_else(|_| {
-            let nowhere: [[DVec2; 2]; 0] = [];
-            Model::new(Scene::new(nowhere).unwrap(), Some(anchor)).unwrap()
-        })
+        Model::new(Scene::new(walls).unwrap(), Some(anchor)).unwrap()
     }
 
     /// A trace from the anchor that keeps to the rules: moves that do not are left out.
@@ -96,8 +111,8 @@ impl Recipe {
         let mut here = model.anchor();
         for &(dx, dy, vertex) in &self.moves {
             let next = match vertex {
-                Some(v) if !model.vertices().is_empty() => model.vertices()[usize::from(v) % model.vertices().len()],
-                _ => self.moved(here, dx, dy),
+                Some(v) => touched(model, v).unwrap_or_else(|| self.moved(here, dx, dy)),
+                None => self.moved(here, dx, dy),
             };
             trace.points.push(next);
             if settle(model, &trace).violation().is_some() {
@@ -118,8 +133,8 @@ impl Recipe {
         for &(dx, dy, vertex) in &self.moves {
             let here = points[points.len() - 1];
             points.push(match vertex {
-                Some(v) if !model.vertices().is_empty() => model.vertices()[usize::from(v) % model.vertices().len()],
-                _ => self.moved(here, dx, dy),
+                Some(v) => touched(model, v).unwrap_or_else(|| self.moved(here, dx, dy)),
+                None => self.moved(here, dx, dy),
             });
         }
         Trace { id, points }

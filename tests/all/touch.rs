@@ -3,7 +3,7 @@
 use glam::DVec2;
 use tautline::engine::{Engine, Funnel, Job, Reference};
 use tautline::rope::{Status, replay};
-use tautline::scene::{Model, Scene, read_scene};
+use tautline::scene::{Inside, Model, Object, Scene, Wall, read_scene};
 use tautline::trace::{Trace, ViolationKind, settle};
 
 type P = [f64; 2];
@@ -145,16 +145,113 @@ fn walls_that_overlap_are_slid_along_as_one() {
 
 #[test]
 fn steps_that_break_the_rules_are_named() {
-    use ViolationKind::{Crosses, EndsInside, SlipsThrough};
+    use ViolationKind::{Crosses, SlipsThrough};
     let m = model([1.0, -1.0], &BOX);
     assert_eq!(violation(&m, &[[1.0, 1.0]]), Some((0, Crosses, 0)));
     assert_eq!(violation(&m, &[[3.0, -1.0], [3.0, 1.0], [1.0, 1.5]]), Some((2, Crosses, 1)));
-    assert_eq!(violation(&m, &[[1.0, -0.5], [1.0, 0.0]]), Some((1, EndsInside, 0)));
+    // On to the middle of a wall and away on its other side: it is the step away that crosses it.
+    assert_eq!(violation(&m, &[[1.0, -0.5], [1.0, 0.0], [1.0, 1.0]]), Some((2, Crosses, 0)));
     // Through the corner of the closed box, at one stroke or resting there.
     assert_eq!(violation(&m, &[[-1.0, -1.0], [1.0, 1.0]]), Some((1, SlipsThrough, 0)));
     assert_eq!(violation(&m, &[[0.0, 0.0], [0.0, 0.0], [1.0, 1.0]]), Some((2, SlipsThrough, 0)));
     // Touching from outside is legal in every way.
     assert_eq!(violation(&m, &[[0.0, 0.0], [-1.0, 1.0], [0.0, 2.0], [3.0, 2.0], [2.0, 0.0], [2.0, 2.0]]), None);
+}
+
+#[test]
+fn a_trace_stands_on_the_middle_of_a_wall_on_the_side_from_which_it_comes() {
+    let m = model([1.0, -1.0], &LONE);
+    // From below, along the wall and off again below: nothing to wind round.
+    assert_eq!(ropes(&m, &[[1.0, 0.0], [3.0, 0.0], [3.0, -1.0]]), ["", "", ""]);
+    // From above: round the near end, also while it stands there.
+    assert_eq!(ropes(&m, &[[-1.0, 1.0], [1.0, 0.0], [3.0, 0.0], [3.0, 1.0]]), ["", "0>", "0>", "0>"]);
+    // To the tip and round it, where it goes on to the other side.
+    assert_eq!(ropes(&m, &[[1.0, 0.0], [0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]), ["", "", "0>", "0>"]);
+    // Off to the other side it may not go, neither at once nor after a stay or a slide.
+    for points in
+        [&[[1.0, 0.0], [1.0, 1.0]][..], &[[1.0, 0.0], [1.0, 0.0], [1.0, 1.0]], &[[1.0, 0.0], [2.0, 0.0], [2.0, 1.0]]]
+    {
+        let last = points.len() - 1;
+        assert_eq!(violation(&m, points), Some((last, ViolationKind::Crosses, 0)), "{points:?}");
+    }
+}
+
+#[test]
+fn an_anchor_on_the_middle_of_a_wall() {
+    // A thin wall has no side: the first step says on which the rope starts, and it keeps to that.
+    let m = model([2.0, 0.0], &LONE);
+    assert_eq!(ropes(&m, &[[2.0, 1.0], [-1.0, 1.0], [1.0, -1.0]]), ["", "", "0<"]);
+    assert_eq!(ropes(&m, &[[2.0, -1.0], [-1.0, -1.0], [1.0, 1.0]]), ["", "", "0>"]);
+    assert_eq!(ropes(&m, &[[3.0, 0.0], [5.0, 0.0], [3.0, -1.0]]), ["", "", "1>"]);
+}
+
+/// A solid box, 3 wide and 1 high, with vertices 0 (1, 1), 1 (4, 1), 2 (4, 2), 3 (1, 2).
+fn solid(anchor: P, inside: Inside) -> Model {
+    let corners = [[1.0, 1.0], [4.0, 1.0], [4.0, 2.0], [1.0, 2.0]].map(DVec2::from);
+    let wall = |i: usize| Wall { ends: [corners[i], corners[(i + 1) % 4]], object: 0, reversed: false };
+    // Counter-clockwise: its inside is on the left, so seen the other way round it is on the right.
+    let wall = |i| Wall { reversed: inside == Inside::Right, ..wall(i) };
+    let scene = Scene::of(vec![Object { inside, ..Object::default() }], (0..4).map(wall)).unwrap();
+    Model::new(scene, Some(anchor.into())).unwrap()
+}
+
+#[test]
+fn a_trace_along_the_border_of_a_solid_goes_round_it() {
+    for inside in [Inside::EvenOdd, Inside::NonZero, Inside::Right] {
+        let m = solid([1.0, 2.0], inside);
+        assert_eq!(ropes(&m, &[[1.0, 1.0], [4.0, 1.0]]), ["", "0<"]);
+        let m = solid([4.0, 1.0], inside);
+        assert_eq!(ropes(&m, &[[1.0, 1.0], [1.0, 2.0]]), ["", "0>"]);
+        // From the middle of its border, on over a corner; and into it.
+        let m = solid([2.0, 2.0], inside);
+        assert_eq!(ropes(&m, &[[1.0, 2.0], [1.0, 1.0], [3.0, 1.0]]), ["", "3<", "3<0<"]);
+        assert_eq!(violation(&m, &[[2.0, 1.5]]), Some((0, ViolationKind::EntersSolid, 2)));
+        assert_eq!(violation(&m, &[[2.0, 2.0], [3.0, 2.0], [3.0, 1.5]]), Some((2, ViolationKind::Crosses, 2)));
+        let m = solid([1.0, 2.0], inside);
+        assert_eq!(violation(&m, &[[1.0, 2.0], [2.0, 1.5]]), Some((1, ViolationKind::EntersSolid, 2)));
+        assert_eq!(violation(&m, &[[1.0, 2.0], [1.0, 2.0]]), None);
+    }
+    // A thin outline has no inside: the rope starts on the side on which the trace goes on.
+    let m = solid([1.0, 2.0], Inside::Free);
+    assert_eq!(ropes(&m, &[[1.0, 2.0], [2.0, 1.5]]), ["", ""]);
+}
+
+/// Between two solids that touch there is no way, and a hole in a solid is free.
+#[test]
+fn solids_that_touch_and_holes() {
+    let ring = |low: P, high: P| {
+        let corners = [low, [high[0], low[1]], high, [low[0], high[1]]].map(DVec2::from);
+        (0..4).map(move |i| [corners[i], corners[(i + 1) % 4]]).collect::<Vec<_>>()
+    };
+    let scene = |objects: &[&[Vec<[DVec2; 2]>]]| {
+        let walls = objects.iter().zip(0..).flat_map(|(rings, object)| {
+            rings.iter().flatten().map(move |&ends| Wall { ends, object, reversed: false })
+        });
+        let polygon = Object { inside: Inside::EvenOdd, ..Object::default() };
+        Scene::of(vec![polygon; objects.len()], walls).unwrap()
+    };
+    let [left, right] = [ring([0.0, 0.0], [1.0, 1.0]), ring([1.0, 0.0], [2.0, 1.0])];
+    let touching = scene(&[&[left], &[right]]);
+    let m = Model::new(touching, Some([1.0, 1.0].into())).unwrap();
+    assert_eq!(violation(&m, &[[1.0, 1.0], [1.0, 0.5]]), Some((1, ViolationKind::EntersSolid, 1)));
+    let frame = scene(&[&[ring([0.0, 0.0], [4.0, 4.0]), ring([1.0, 1.0], [3.0, 3.0])]]);
+    let m = Model::new(frame.clone(), Some([1.0, 1.0].into())).unwrap();
+    assert_eq!(ropes(&m, &[[3.0, 1.0], [2.0, 2.0]]), ["", ""]);
+    assert_eq!(violation(&m, &[[0.5, 0.5]]), Some((0, ViolationKind::EntersSolid, 4)));
+    let m = Model::new(frame, Some([0.0, 0.0].into())).unwrap();
+    assert_eq!(violation(&m, &[[0.5, 0.5]]), Some((0, ViolationKind::EntersSolid, 0)));
+}
+
+/// The step at which nothing helps any more is named, not an earlier one that would have been right another way.
+#[test]
+fn the_step_that_is_wrong_is_named() {
+    let walls = [[[2.0, 0.0], [3.0, 0.0]], [[3.0, 0.0], [3.0, 3.0]], [[2.0, 0.0], [2.0, 3.0]]];
+    let m = model([1.0, 0.0], &walls);
+    // Below the lower wall and up the right one, which is legal.
+    assert_eq!(ropes(&m, &[[1.0, 0.0], [3.0, 0.0], [3.0, 1.0]]), ["", "", "1<"]);
+    // From there to the inside it is not, nor from the corner.
+    assert_eq!(violation(&m, &[[1.0, 0.0], [3.0, 0.0], [3.0, 1.0], [2.5, 1.0]]), Some((3, ViolationKind::Crosses, 1)));
+    assert_eq!(violation(&m, &[[1.0, 0.0], [3.0, 0.0], [2.5, 1.0]]), Some((2, ViolationKind::SlipsThrough, 0)));
 }
 
 /// Along real coasts from vertex to vertex, resting on them, cutting corners and leaving them again, as planners' shortest

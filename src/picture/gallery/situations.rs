@@ -144,6 +144,25 @@ pub(super) const ALL: &[Situation] = &[
         steps: &[1, 2, 3],
     },
     Situation {
+        name: "touching-a-tip",
+        title: "Straight over a tip",
+        caption: "The step leads straight over a wall's end and passes it a hair off, on the side where the wall is not.",
+        walls: &[[[4.0, 1.0], [5.0, 3.0]]],
+        anchor: [0.0, 3.0],
+        points: &[[1.0, 1.0], [7.0, 1.0], [7.0, 2.5]],
+        steps: &[0, 1, 2],
+    },
+    Situation {
+        name: "touching-the-middle",
+        title: "On the middle of a wall",
+        caption: "The free end comes to the middle of a wall, slides along a part of it and leaves it on the side from \
+                  which it came.",
+        walls: &[[[3.0, -2.0], [3.0, 2.0]]],
+        anchor: [0.0, 0.0],
+        points: &[[1.0, 3.0], [5.0, 3.0], [3.0, 0.0], [3.0, 1.0], [6.0, 0.0]],
+        steps: &[2, 3, 4],
+    },
+    Situation {
         name: "crossing-walls",
         title: "Walls that cross",
         caption: "A rope bends at ends of walls only: where two walls cross there is no corner that it could touch.",

@@ -129,7 +129,7 @@ impl<'a> Reader<'a> {
     fn scene(self, flatten: Option<f64>) -> Result<Scene, Fault> {
         let flat = self.outlines.flatten(flatten).map_err(|what| Fault::new(Place::default(), what))?;
         let note = flat.note();
-        let mut scene = Scene::new(flat.walls)?;
+        let mut scene = Scene::of(flat.objects, flat.walls)?;
         if let Some((anchor, _)) = self.anchor {
             scene = scene.with_anchor(anchor);
         }

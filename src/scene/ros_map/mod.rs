@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use super::cells::borders;
+use super::cells::{self, borders};
 use super::image::{self, Pixel};
 use super::{Scene, Unknown};
 use crate::read_error::{Fault, Place, ReadError};
@@ -76,7 +76,7 @@ pub(super) fn read(path: &Path, unknown: Unknown) -> Result<Scene, ReadError> {
         let what = format!("more than {WALLS_MAX} walls; is this the image of a map?");
         return Err(Fault::new(Place::default(), what).in_file(&image));
     }
-    let scene = Scene::new(walls.into_iter().map(|ends| ends.map(corner)));
+    let scene = cells::scene(walls, corner, true);
     let mut scene = scene.map_err(|fault| Fault::from(fault).in_file(path))?;
     scene.note("a unit is 1 m; y points up");
     if unknowns > 0 {

@@ -156,7 +156,7 @@ impl<'a, 'i> Reader<'a, 'i> {
     fn scene(self, flatten: Option<f64>, unit: &str) -> Result<Scene, Fault> {
         let flat = self.outlines.flatten(flatten).map_err(|what| Fault::new(Place::default(), what))?;
         let note = flat.note();
-        let mut scene = Scene::new(flat.walls)?.with_y_down();
+        let mut scene = Scene::of(flat.objects, flat.walls)?.with_y_down();
         if let Some((anchor, _)) = self.anchor {
             scene = scene.with_anchor(anchor);
         }

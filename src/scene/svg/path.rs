@@ -132,6 +132,7 @@ fn arc(from: DVec2, radii: DVec2, rotation: f64, [large, sweep]: [bool; 2], to: 
 mod tests {
     use glam::DAffine2;
 
+    use super::super::super::Wall;
     use super::super::super::curves::Outlines;
     use super::*;
 
@@ -139,7 +140,7 @@ mod tests {
         let mut outlines = Outlines::default();
         draw(data, &mut outlines.pen(DAffine2::IDENTITY)).unwrap();
         let walls = outlines.flatten(Some(tolerance)).unwrap().walls;
-        walls.iter().map(|[a, b]| [a.x, a.y, b.x, b.y]).collect()
+        walls.iter().map(|&Wall { ends: [a, b], .. }| [a.x, a.y, b.x, b.y]).collect()
     }
 
     #[test]

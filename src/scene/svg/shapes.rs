@@ -177,6 +177,7 @@ mod tests {
     use glam::DAffine2;
     use roxmltree::Document;
 
+    use super::super::super::Wall;
     use super::super::super::curves::Outlines;
     use super::*;
 
@@ -187,7 +188,7 @@ mod tests {
         let shape = Shape { node: document.root_element(), viewport };
         assert!(shape.draw(&mut outlines.pen(DAffine2::IDENTITY))?, "{element}");
         let walls = outlines.flatten(Some(0.01)).unwrap().walls;
-        Ok(walls.iter().map(|[a, b]| [a.x, a.y, b.x, b.y]).collect())
+        Ok(walls.iter().map(|&Wall { ends: [a, b], .. }| [a.x, a.y, b.x, b.y]).collect())
     }
 
     #[test]

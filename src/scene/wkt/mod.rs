@@ -9,8 +9,8 @@ use wkt::Wkt;
 use wkt::types::{Coord, LineString, Polygon};
 
 use super::geographic;
-use super::lines::{push_line, push_ring};
-use super::{Scene, excerpt};
+use super::lines::Lines;
+use super::{Object, Scene, excerpt};
 use crate::geometry::check_point;
 use crate::number::{self, NumberFault, VANISHES};
 use crate::read_error::{Fault, Place};
@@ -54,7 +54,7 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
 /// What the geometries seen so far hold.
 #[derive(Default)]
 struct Found {
-    walls: Vec<[DVec2; 2]>,
+    lines: Lines,
     points: Vec<DVec2>,
     /// Whether an SRID says so.
     geographic: bool,
@@ -92,18 +92,18 @@ impl Found {
     }
 
     fn line(&mut self, line: &LineString<f64>, place: &Place) -> Result<(), Fault> {
-        push_line(&mut self.walls, line.coords().iter().map(position), place)
+        self.lines.begin(Object::default());
+        self.lines.push_line(line.coords().iter().map(position), place)
     }
 
     fn polygon(&mut self, polygon: &Polygon<f64>, place: &Place) -> Result<(), Fault> {
+        self.lines.begin_polygon(&Object::default());
         let mut rings = polygon.rings().iter().enumerate();
-        rings.try_for_each(|(i, ring)| {
-            push_ring(&mut self.walls, ring.coords().iter().map(position), &place.then("ring", i))
-        })
+        rings.try_for_each(|(i, ring)| self.lines.push_ring(ring.coords().iter().map(position), &place.then("ring", i)))
     }
 
     fn scene(self) -> Result<Scene, Fault> {
-        let mut scene = Scene::new(self.walls)?;
+        let mut scene = self.lines.scene()?;
         match self.points[..] {
             [] => {}
             [anchor] => scene = scene.with_anchor(anchor),

@@ -7,6 +7,7 @@ mod draw;
 mod engines;
 mod extremes;
 mod process;
+mod queries;
 mod reports;
 mod results;
 mod safety;

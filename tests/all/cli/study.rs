@@ -282,7 +282,7 @@ fn faults_in_a_study_are_named() {
     for (from, to, parts) in [
         ("steps = 200", "stpes = 200", ["s.toml: line 8: walk.stpes: ", "did you mean `steps`?"]),
         ("\"rooms\"", "\"romms\"", ["s.toml: line 3: scene.built_in", "romms"]),
-        ("step = 0.25", "step = -1.0", ["s.toml: line 7: walk.step: -1"]),
+        ("step = 0.25", "step = -1.0", ["s.toml: line 7: walk.step", "-1 is no length"]),
         ("block = 250", "block = 0", ["s.toml: line 10: run", "at least 1"]),
         ("sample = 3", "sample = 0", ["anchor", "1 to 1024"]),
     ] {
