@@ -8,6 +8,9 @@ use toml::de::{DeTable, DeValue};
 use super::plan::Plan;
 use crate::number::{self, NumberFault, VANISHES};
 
+/// Among how many keys the one at fault is looked for.
+const KEYS_MAX: usize = 200;
+
 /// A key of the file.
 struct Key {
     /// With the tables in which it lies: `walk.step`.
@@ -88,12 +91,21 @@ fn culprit<'k>(document: &toml::Table, message: &str, keys: &'k [Key]) -> Option
         Plan::deserialize(toml::Value::Table(document.clone())).err().map(|e| e.message().to_owned())
     };
     let whole = fault(document);
-    let decides = |key: &&Key| {
+    // How surely a key is at fault: without it nothing is, or nothing but that it is missing; or another fault comes first.
+    let decides = |key: &Key| {
         let mut names: Vec<&str> = key.name.split('.').collect();
         let last = names.pop().unwrap_or_default();
+        if message.starts_with(&format!("unknown field `{last}`")) {
+            return Some(0);
+        }
         let mut rest = document.clone();
         let table = names.iter().try_fold(&mut rest, |table, name| table.get_mut(*name)?.as_table_mut());
-        table.and_then(|table| table.remove(last)).is_some() && fault(&rest) != whole
+        table.and_then(|table| table.remove(last))?;
+        match fault(&rest) {
+            same if same == whole => None,
+            None => Some(0),
+            Some(other) => Some(u8::from(other != format!("missing field `{last}`"))),
+        }
     };
     // What is missing is so in a table. Without its kind nothing else is said of a walk, nor without a whole section.
     let missing = message.starts_with("missing");
@@ -105,7 +117,10 @@ fn culprit<'k>(document: &toml::Table, message: &str, keys: &'k [Key]) -> Option
     };
     let mut candidates: Vec<&Key> = keys.iter().filter(|key| !(missing && key.leaf)).collect();
     candidates.sort_by_key(|key| rank(key));
-    candidates.into_iter().find(decides)
+    // All are tried; no person writes so many.
+    candidates.truncate(KEYS_MAX);
+    let surely = candidates.into_iter().filter_map(|key| Some((decides(key)?, key)));
+    surely.min_by_key(|(doubt, _)| *doubt).map(|(_, key)| key)
 }
 
 /// All keys, in the order in which they stand.
@@ -166,6 +181,9 @@ mod tests {
         let what =
             Plan::parse("[scene]\nfile = \"a.wkt\"\nanchor = \"here\"\n[walk]\nkind = \"given\"\nfile = \"a.csv\"");
         assert_eq!(what.unwrap_err().what, "line 3: scene.anchor must be [x, y], a list of such, or { sample = N }");
+        let walk = walk.replace("steps", "stpes");
+        let what = Plan::parse(&format!("[scene]\nbuilt_in = 'rooms'\nanchor = {{ sample = 3 }}\n{walk}step = 1.0"));
+        assert!(what.unwrap_err().what.starts_with("line 6: walk.stpes: unknown field `stpes`"));
         let what = Plan::parse("scene = { file = \"a.wkt\",\n anchor = [0.0,\n 1e-400] }\nwalk = { kind = \"given\" }");
         assert!(what.unwrap_err().what.starts_with("line 4: walk: missing field `file`"));
     }
