@@ -139,7 +139,7 @@ fn depth() -> Result<String> {
     let pillar = Scene::new((0..4).map(|i| [corners[i], corners[(i + 1) % 4]]))?;
     let model = Model::new(pillar, Some([0.0, -3.0].into()))?;
     let mut engine = Cpu::new(&model);
-    let mut text = String::from("| turns about the pillar | contacts at the most | ns a step |\n|---|---|---|\n");
+    let mut text = String::from("| times round the pillar | greatest depth | ns a step |\n|---|---|---|\n");
     for turns in [1, 10, 100, 1000, 10_000, 100_000] {
         // There and back, 8 steps a turn.
         let place = |i: i32| DVec2::from_angle(std::f64::consts::TAU * (f64::from(i) / 8.0 - 0.25)) * 3.0;

@@ -114,7 +114,8 @@ fn find(mut reader: TraceReader, wanted: &[u64], path: &Path) -> Result<Vec<Trac
 }
 
 fn gallery(folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|e| Failure::input(anyhow!("cannot make {}: {e}", folder.display())))?;
+    std::fs::create_dir_all(folder)
+        .map_err(|e| Failure::system(e.kind(), anyhow!("cannot make {}: {e}", folder.display())))?;
     for situation in Situation::all() {
         let path = folder.join(format!("{}.svg", situation.name));
         super::look::write_whole(&path, situation.svg().as_bytes())?;

@@ -1,6 +1,7 @@
 //! Choosing what computes the ropes.
 
 use anyhow::anyhow;
+use clap::ValueEnum;
 use tautline::engine::{Cpu, Engine, FastGpu, Funnel, Gpu, Note, Precision, Reference, WINDOW};
 use tautline::gpu::{AdapterChoice, Device, GpuError};
 use tautline::scene::Model;
@@ -50,6 +51,18 @@ enum PrecisionName {
     Certified,
     /// The GPU decides in f32 and nothing confirms it: ropes can be wrong
     Fast,
+}
+
+/// The engines that an answer can be computed with: those that count the same events. The others are not offered; given all
+/// the same, they are [refused](super::study) with the reason.
+pub(super) fn of_studies(arg: clap::Arg) -> clap::Arg {
+    use clap::builder::{PossibleValuesParser, TypedValueParser};
+    let offered = EngineName::value_variants().iter().filter_map(|name| {
+        let is_hidden = matches!(name, EngineName::Funnel | EngineName::Note);
+        Some(name.to_possible_value()?.hide(is_hidden))
+    });
+    let named = |name: String| EngineName::from_str(&name, false).expect("only names of engines are taken");
+    arg.value_parser(PossibleValuesParser::new(offered).map(named))
 }
 
 /// An engine, and in words what it runs on.

@@ -44,17 +44,20 @@ pub(super) const ADAPTERS: &str = "Examples:
   tautline adapters --json";
 
 pub(super) const COMPLETIONS: &str = "Examples:
+  mkdir -p ~/.local/share/bash-completion/completions
   tautline completions bash > ~/.local/share/bash-completion/completions/tautline
+  mkdir -p ~/.zfunc
   tautline completions zsh > ~/.zfunc/_tautline
+  mkdir -p ~/.config/fish/completions
   tautline completions fish > ~/.config/fish/completions/tautline.fish";
 
 pub(super) const MAN: &str = "Examples:
-  tautline man ~/.local/share/man/man1                       then: man tautline";
+  tautline man ~/.local/share/man/man1          then: man -M ~/.local/share/man tautline";
 
 pub(crate) const STUDY_RUN: &str = "Examples:
   tautline study run                                         the built-in example
   tautline study run mine.toml --dry-run                     is it sound, and what would it cost?
-  tautline study run mine.toml --traces 1000000
+  tautline study run mine.toml --count 1000000
   tautline study run mine.toml --stride 4 --simplify 0.5     faster, and nearly right
   tautline study run mine.toml --shard 0/4 --out part0";
 
@@ -70,7 +73,7 @@ pub(crate) const STUDY_SHOW: &str = "Examples:
 
 pub(crate) const STUDY_REPLAY: &str = "Examples:
   tautline study replay mine-study --trace 7
-  tautline study replay mine-study --trace 7 --events events.jsonl
+  tautline study replay mine-study --trace 7 --events events.jsonl --points points.csv
   tautline study replay mine-study --trace 7 --draw rope.svg";
 
 pub(crate) const STUDY_INIT: &str = "Examples:
@@ -78,7 +81,8 @@ pub(crate) const STUDY_INIT: &str = "Examples:
   tautline study init mine.toml";
 
 pub(crate) const STUDY_SCHEMA: &str = "Examples:
-  tautline study schema > study.schema.json";
+  tautline study schema > study.schema.json
+  tautline study schema --of summary > summary.schema.json";
 
 #[cfg(test)]
 mod tests {
@@ -103,6 +107,10 @@ mod tests {
             let lines: Vec<&str> = help.lines().skip_while(|line| *line != "Examples:").skip(1).collect();
             assert!(!lines.is_empty(), "{command} has no examples");
             for line in lines.iter().take_while(|line| line.starts_with("  ")) {
+                // The folder that it writes to.
+                if line.starts_with("  mkdir -p ~/") {
+                    continue;
+                }
                 // What follows is said about it, or done with what comes out.
                 let words = line.trim().split("  ").next().unwrap().split(" > ").next().unwrap();
                 assert!(words.starts_with(&command), "{command}: {line}");

@@ -1,6 +1,7 @@
 //! What a command fails with: the message and the exit code that belongs to it.
 
 use std::fmt;
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use tautline::ReadError;
@@ -27,6 +28,21 @@ impl Failure {
     /// The input or the usage is bad.
     pub(crate) fn input(error: anyhow::Error) -> Self {
         Failure { code: 2, error }
+    }
+
+    /// What the operating system refuses: bad input where the place is not one to write to, whatever the command (no such
+    /// folder, no permission, something else stands there); an internal error where writing broke off, as on a full disk.
+    pub(crate) fn system(kind: ErrorKind, error: anyhow::Error) -> Self {
+        match kind {
+            ErrorKind::NotFound
+            | ErrorKind::PermissionDenied
+            | ErrorKind::AlreadyExists
+            | ErrorKind::NotADirectory
+            | ErrorKind::IsADirectory
+            | ErrorKind::ReadOnlyFilesystem
+            | ErrorKind::InvalidFilename => Failure::input(error),
+            _ => Failure::internal(error),
+        }
     }
 
     /// Stopped by Ctrl-C.
@@ -104,11 +120,30 @@ impl From<EngineError> for Failure {
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         match error {
-            WriteError::Io { .. } => Failure::internal(error.into()),
+            WriteError::Io { ref cause, .. } => Failure::system(cause.kind(), error.into()),
             WriteError::Extension { .. }
             | WriteError::SceneExtension { .. }
             | WriteError::Target { .. }
             | WriteError::Source { .. } => Failure::input(error.into()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_that_is_not_to_be_written_to_is_bad_input_and_a_full_disk_is_not() {
+        let code = |kind: ErrorKind| {
+            let error = WriteError::Io { path: "a.csv".into(), cause: kind.into() };
+            Failure::from(error).code
+        };
+        for kind in [ErrorKind::PermissionDenied, ErrorKind::NotFound, ErrorKind::ReadOnlyFilesystem] {
+            assert_eq!(code(kind), 2, "{kind}");
+        }
+        for kind in [ErrorKind::StorageFull, ErrorKind::QuotaExceeded, ErrorKind::WriteZero, ErrorKind::Other] {
+            assert_eq!(code(kind), 1, "{kind}");
         }
     }
 }

@@ -17,7 +17,7 @@ pub(crate) struct CompletionsArgs {
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct ManArgs {
-    /// The folder to write the pages to, one for each command; must be there
+    /// The folder to write the pages to, one for each command; it is made where there is none
     #[arg(default_value = ".", value_name = "DIR")]
     folder: PathBuf,
 }
@@ -30,10 +30,9 @@ pub(crate) fn completions(args: &CompletionsArgs) -> Result<(), Failure> {
 
 pub(crate) fn man(args: &ManArgs) -> Result<(), Failure> {
     let shown = args.folder.display();
-    if !args.folder.is_dir() {
-        return Err(Failure::input(anyhow!("{shown} is no folder; make it first, or give another")));
-    }
+    std::fs::create_dir_all(&args.folder)
+        .map_err(|e| Failure::system(e.kind(), anyhow!("cannot make the folder {shown}: {e}")))?;
     clap_mangen::generate_to(Cli::command(), &args.folder)
-        .map_err(|e| Failure::internal(anyhow!("cannot write to {shown}: {e}")))?;
+        .map_err(|e| Failure::system(e.kind(), anyhow!("cannot write to {shown}: {e}")))?;
     print(&format!("wrote the pages to {shown}; read them with: man -l {}\n", args.folder.join("tautline.1").display()))
 }

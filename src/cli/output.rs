@@ -126,8 +126,8 @@ fn write_all(
         for records in records.chunks(RECORDS) {
             interrupt::check()?;
             let (results, events) = rayon::join(
-                || out.as_mut().map_or(Ok(()), |w| w.write_all(records)),
-                || events.as_mut().map_or(Ok(()), |w| w.write_all(model.vertices(), records)),
+                || out.as_mut().map_or(Ok(()), |w| w.write_all(model.scene(), records)),
+                || events.as_mut().map_or(Ok(()), |w| w.write_all(model.scene(), records)),
             );
             results.and(events)?;
         }

@@ -102,14 +102,14 @@ fn table(scene: &Path, queries: &Path, map: &GridMap, answers: &[Answer]) -> Str
     let count = counted(answers.len() as u64, "query", "queries");
     let _ = writeln!(text, "queries  {}: {count}, {straight} driven straight, 0 refused\n", queries.display());
     let _ =
-        writeln!(text, "  bucket  queries  octile, file  octile, planned        rope  rope / octile  most contacts");
+        writeln!(text, "  bucket  queries  octile, file  octile, planned        rope  rope / octile  greatest depth");
     let mut line = |name: &str, answers: &[&Answer]| {
         let mean = |of: &dyn Fn(&Answer) -> f64| answers.iter().map(|&a| of(a)).sum::<f64>() / answers.len() as f64;
         let (file, planned, rope) = (mean(&|a| a.query.octile), mean(&|a| a.octile), mean(&|a| a.record.length));
         let ratio = if planned > 0.0 { format!("{:.4}", rope / planned) } else { "n/a".to_owned() };
         let most = answers.iter().map(|a| a.record.max_depth).max().unwrap_or(0);
         let [file, planned, rope] = [file, planned, rope].map(short);
-        let _ = writeln!(text, "  {name:>6}{:>9}{file:>14}{planned:>17}{rope:>12}{ratio:>15}{most:>15}", answers.len());
+        let _ = writeln!(text, "  {name:>6}{:>9}{file:>14}{planned:>17}{rope:>12}{ratio:>15}{most:>16}", answers.len());
     };
     for (bucket, answers) in &buckets {
         line(&bucket.to_string(), answers);

@@ -16,7 +16,7 @@ const ERROR: f64 = 1e-5;
 const CLASSES: u32 = 1 << 21;
 
 /// Mean, median and maximum over the traces.
-#[derive(Debug, Default, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub(crate) struct Spread {
     pub mean: f64,
     pub median: f64,
@@ -44,9 +44,10 @@ impl Counts {
         *self.0.entry(number).or_default() += 1;
     }
 
-    pub(crate) fn spread(&self) -> Spread {
+    /// `None` if there are none.
+    pub(crate) fn spread(&self) -> Option<Spread> {
         let count: u64 = self.0.values().sum();
-        let Some((&max, _)) = self.0.last_key_value().filter(|_| count > 0) else { return Spread::default() };
+        let (&max, _) = self.0.last_key_value()?;
         let sum: u128 = self.0.iter().map(|(&number, &times)| u128::from(number) * u128::from(times)).sum();
         let ranked = |rank: u64| {
             let mut seen = 0;
@@ -57,7 +58,7 @@ impl Counts {
             reached.map_or(0.0, |(&number, _)| f64::from(number))
         };
         let median = (ranked((count - 1) / 2) + ranked(count / 2)) / 2.0;
-        Spread { mean: sum as f64 / count as f64, median, max: f64::from(max), approximate: false }
+        Some(Spread { mean: sum as f64 / count as f64, median, max: f64::from(max), approximate: false })
     }
 }
 
@@ -90,9 +91,10 @@ impl Lengths {
         }
     }
 
-    pub(crate) fn spread(&self) -> Spread {
+    /// `None` if there are none.
+    pub(crate) fn spread(&self) -> Option<Spread> {
         if self.count == 0 {
-            return Spread::default();
+            return None;
         }
         let median = match &self.sketch {
             Some(sketch) => sketch.quantile(0.5).ok().flatten().unwrap_or(f64::NAN),
@@ -102,7 +104,8 @@ impl Lengths {
                 (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]) / 2.0
             }
         };
-        Spread { mean: self.sum / self.count as f64, median, max: self.max, approximate: self.sketch.is_some() }
+        let (mean, approximate) = (self.sum / self.count as f64, self.sketch.is_some());
+        Some(Spread { mean, median, max: self.max, approximate })
     }
 }
 
@@ -113,28 +116,29 @@ mod tests {
     #[test]
     fn whole_numbers_are_exact() {
         let mut counts = Counts::default();
-        assert_eq!(counts.spread(), Spread::default());
+        assert_eq!(counts.spread(), None);
         [3, 1, 7, u32::MAX].into_iter().for_each(|n| counts.add(n));
         let max = f64::from(u32::MAX);
-        assert_eq!(counts.spread(), Spread { mean: (11.0 + max) / 4.0, median: 5.0, max, approximate: false });
+        assert_eq!(counts.spread(), Some(Spread { mean: (11.0 + max) / 4.0, median: 5.0, max, approximate: false }));
         counts.add(3);
-        assert_eq!(counts.spread().median, 3.0);
+        assert_eq!(counts.spread().unwrap().median, 3.0);
     }
 
     #[test]
     fn few_lengths_are_exact_and_many_nearly_so() {
         let mut lengths = Lengths::default();
-        assert_eq!(lengths.spread(), Spread::default());
+        assert_eq!(lengths.spread(), None);
         [2.5, 0.0, 8.0, 4.0].into_iter().for_each(|n| lengths.add(n));
-        assert_eq!(lengths.spread(), Spread { mean: 3.625, median: 3.25, max: 8.0, approximate: false });
-        assert_eq!(lengths.spread().json(), json!({"mean": 3.625, "median": 3.25, "max": 8.0}));
+        let spread = lengths.spread().unwrap();
+        assert_eq!(spread, Spread { mean: 3.625, median: 3.25, max: 8.0, approximate: false });
+        assert_eq!(spread.json(), json!({"mean": 3.625, "median": 3.25, "max": 8.0}));
 
         for scale in [1.0, 1e-130, 1e130] {
             let mut lengths = Lengths::default();
             let count = 3 * HELD;
             // Some of no length, the others evenly spread; in an order that is not theirs.
             (0..count).for_each(|i| lengths.add(scale * (i * 7919 % count).saturating_sub(1000) as f64));
-            let spread = lengths.spread();
+            let spread = lengths.spread().unwrap();
             let expected = scale * (count / 2 - 1000) as f64;
             assert!((spread.median / expected - 1.0).abs() < 2.0 * ERROR, "{} for {expected}", spread.median);
             assert_eq!(spread.max, scale * (count - 1001) as f64);

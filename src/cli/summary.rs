@@ -9,7 +9,7 @@ use tautline::geometry::number;
 use tautline::rope::{EventKind, TraceRecord};
 use tautline::scene::Model;
 
-use tautline::study::Traded;
+use tautline::study::{Traded, quantity};
 use tautline::trace::SettledTrace;
 
 use super::spread::{Counts, Lengths, Spread};
@@ -29,7 +29,12 @@ pub(crate) struct Summary {
     precision: &'static str,
     traces: u64,
     steps: u64,
+    /// How many steps leave the free end where it is.
+    still: u64,
+    /// How many traces break the rules. They are in none of the numbers below: their ropes may be wrong.
     violations: u64,
+    /// The steps of all others.
+    counted_steps: u64,
     traded: Option<(TradeArgs, Traded)>,
     wraps: u64,
     unwraps: u64,
@@ -57,9 +62,14 @@ pub(super) fn precision(engine: &dyn Engine) -> &'static str {
     engine.precision().map_or("f64", Precision::name)
 }
 
-fn row(name: &str, spread: &Spread) -> String {
-    let [mean, median, max] = [spread.mean, spread.median, spread.max].map(short);
-    format!("  {name:26}{mean:>12}{median:>12}{max:>12}\n")
+fn row(name: &str, spread: Option<Spread>) -> String {
+    let [mean, median, max] = spread.map_or(["n/a"; 3].map(str::to_owned), |s| [s.mean, s.median, s.max].map(short));
+    format!("  {:26}{mean:>12}{median:>12}{max:>12}\n", quantity(name))
+}
+
+/// Null where there is nothing to tell of.
+fn json_of(spread: Option<Spread>) -> Value {
+    spread.map_or(Value::Null, |spread| spread.json())
 }
 
 /// Four significant digits, in the plain way where that is short.
@@ -118,7 +128,9 @@ impl Summary {
             precision: precision(engine),
             traces: 0,
             steps: 0,
+            still: 0,
             violations: 0,
+            counted_steps: 0,
             traded: None,
             wraps: 0,
             unwraps: 0,
@@ -149,11 +161,16 @@ impl Summary {
                 traded.crossing_steps += trace.crossings() as u64;
             }
         }
-        self.violations += settled.iter().filter(|trace| trace.violation().is_some()).count() as u64;
-        for record in records {
-            let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count();
+        for (trace, record) in settled.iter().zip(records) {
             self.traces += 1;
             self.steps += record.steps;
+            self.still += trace.still() as u64;
+            if trace.violation().is_some() {
+                self.violations += 1;
+                continue;
+            }
+            let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count();
+            self.counted_steps += record.steps;
             self.wraps += wraps as u64;
             self.unwraps += (record.events.len() - wraps) as u64;
             self.length.add(record.length);
@@ -173,7 +190,7 @@ impl Summary {
         let events = self.wraps + self.unwraps;
         let mut text = format!(
             "scene    {}: {} with {} ends{}, anchor {anchor}\n\
-             traces   {}, {}\n\
+             traces   {}, {}{}\n\
              engine   {} ({}) on {}\n",
             self.scene,
             counted(self.walls as u64, "wall", "walls"),
@@ -181,6 +198,7 @@ impl Summary {
             self.tried(),
             grouped(self.traces),
             counted(self.steps, "step", "steps"),
+            if self.still > 0 { format!(", {} of which stand still", grouped(self.still)) } else { String::new() },
             self.engine,
             self.precision,
             self.on,
@@ -191,19 +209,23 @@ impl Summary {
         if self.violations > 0 {
             let what =
                 counted(self.violations, "trace crosses a wall and is marked", "traces cross walls and are marked");
-            text += &format!("crossing {what}\n");
+            text += &format!("crossing {what}; what follows leaves them out\n");
         }
         let [wraps, unwraps] =
             [(self.wraps, "wrap", "wraps"), (self.unwraps, "unwrap", "unwraps")].map(|(n, a, b)| counted(n, a, b));
         text += &format!("events   {wraps}, {unwraps}");
-        if self.steps > 0 {
-            text += &format!(", {} a step", short(events as f64 / self.steps as f64));
+        if self.counted_steps > 0 {
+            text += &format!(", {} a step", short(events as f64 / self.counted_steps as f64));
         }
-        text += &format!("\n\n  {:26}{:>12}{:>12}{:>12}\n", "over all traces", "mean", "median", "max");
-        text += &row("rope length at the end", &self.length.spread());
-        text += &row("longest rope on the way", &self.max_length.spread());
-        text += &row("contacts at the end", &self.depth.spread());
-        text += &row("most contacts on the way", &self.max_depth.spread());
+        let over = match self.violations {
+            0 => "over all traces".to_owned(),
+            _ => format!("over {}", counted(self.traces - self.violations, "trace", "traces")),
+        };
+        text += &format!("\n\n  {over:26}{:>12}{:>12}{:>12}\n", "mean", "median", "max");
+        text += &row("length", self.length.spread());
+        text += &row("max_length", self.max_length.spread());
+        text += &row("depth", self.depth.spread());
+        text += &row("max_depth", self.max_depth.spread());
         let [prepared, evaluated, written, total] =
             [times.prepared, times.evaluated, times.written, times.total].map(|t| t.as_secs_f64());
         let written = if written > 0.0 { format!(", writing {written:.2} s") } else { String::new() };
@@ -239,10 +261,11 @@ impl Summary {
                 "vertices_left": traded.vertices_left, "jumps": traded.jumps,
                 "crossing_traces": traded.crossing_traces, "crossing_steps": traded.crossing_steps,
             })),
-            "traces": self.traces, "steps": self.steps, "violations": self.violations,
+            "traces": self.traces, "steps": self.steps, "still": self.still,
+            "violations": self.violations, "counted": self.traces - self.violations,
             "wraps": self.wraps, "unwraps": self.unwraps,
-            "length": self.length.spread().json(), "max_length": self.max_length.spread().json(),
-            "depth": self.depth.spread().json(), "max_depth": self.max_depth.spread().json(),
+            "length": json_of(self.length.spread()), "max_length": json_of(self.max_length.spread()),
+            "depth": json_of(self.depth.spread()), "max_depth": json_of(self.max_depth.spread()),
             "seconds": {
                 "prepare": times.prepared.as_secs_f64(), "evaluate": times.evaluated.as_secs_f64(),
                 "write": times.written.as_secs_f64(), "total": times.total.as_secs_f64(),

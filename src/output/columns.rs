@@ -10,6 +10,7 @@ use arrow_schema::{DataType, Field, Fields};
 use glam::DVec2;
 
 use super::tables::Columns;
+use super::text::Row;
 use crate::rope::{Event, TraceRecord};
 
 fn point_fields() -> Fields {
@@ -68,7 +69,8 @@ impl Default for ResultColumns {
 }
 
 impl ResultColumns {
-    pub(super) fn push(&mut self, r: &TraceRecord) {
+    /// Adds a row; sides are those that a picture shows.
+    pub(super) fn push(&mut self, y_down: bool, r: &TraceRecord) {
         self.trace.append_value(r.trace);
         self.status.append_value(r.status.name());
         self.steps.append_value(r.steps);
@@ -79,7 +81,7 @@ impl ResultColumns {
         self.events.append_value(r.events.len() as u64);
         for (at, side) in &r.wraps {
             push_point(self.wraps.values(), Some(*at));
-            self.sides.values().append_value(side.name());
+            self.sides.values().append_value(side.shown(y_down).name());
         }
         self.wraps.append(true);
         self.sides.append(true);
@@ -138,14 +140,16 @@ pub(super) struct EventColumns {
 }
 
 impl EventColumns {
-    pub(super) fn push(&mut self, trace: u64, e: &Event, at: DVec2) {
+    pub(super) fn push(&mut self, row: &Row<'_>) {
+        let Row { trace, at, .. } = *row;
+        let Event { step, kind, vertex, .. } = *row.event;
         self.trace.append_value(trace);
-        self.step.append_value(u64::from(e.step));
-        self.kind.append_value(e.kind.name());
-        self.vertex.append_value(e.vertex);
+        self.step.append_value(u64::from(step));
+        self.kind.append_value(kind.name());
+        self.vertex.append_value(vertex);
         self.x.append_value(at.x);
         self.y.append_value(at.y);
-        self.side.append_value(e.side.name());
+        self.side.append_value(row.side());
     }
 }
 

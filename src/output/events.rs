@@ -2,18 +2,18 @@
 
 use std::path::Path;
 
-use glam::DVec2;
-
 use super::columns::EventColumns;
 use super::rows::Rows;
+use super::text::Row;
 use super::{CHUNK, WholeFile, WriteError, text};
 use crate::rope::{Event, TraceRecord};
+use crate::scene::Scene;
 
 /// Writes the events of traces to a file that appears when it is finished.
 ///
 /// `.jsonl`, `.csv` and `.parquet` have the same columns: `trace`, `step`, `kind` (`wrap` or `unwrap`), `vertex` (the
-/// scene's number of it), `x`, `y` (where it stands), `side` (`left` or `right`). Memory is bounded; it does not grow
-/// with the number of events.
+/// scene's number of it), `x`, `y` (where it stands), `side` (`left` or `right`, as a picture of the scene shows it, also where
+/// y points down: [`Side::shown`](crate::rope::Side::shown)). Memory is bounded; it does not grow with the number of events.
 pub struct EventWriter(Rows<EventColumns>);
 
 impl EventWriter {
@@ -26,7 +26,7 @@ impl EventWriter {
         Ok(EventWriter(Rows::create(path, text::EVENT_HEADER)?))
     }
 
-    /// Adds the events of one trace; `vertices` are the scene's.
+    /// Adds the events of one trace in that scene.
     ///
     /// # Errors
     ///
@@ -35,8 +35,8 @@ impl EventWriter {
     /// # Panics
     ///
     /// If an event names a vertex that is not there.
-    pub fn write(&mut self, vertices: &[DVec2], record: &TraceRecord) -> Result<(), WriteError> {
-        self.write_all(vertices, std::slice::from_ref(record))
+    pub fn write(&mut self, scene: &Scene, record: &TraceRecord) -> Result<(), WriteError> {
+        self.write_all(scene, std::slice::from_ref(record))
     }
 
     /// Adds the events of traces; the bytes are the same as one by one. Text is made on all cores and held until it is
@@ -49,15 +49,14 @@ impl EventWriter {
     /// # Panics
     ///
     /// If an event names a vertex that is not there.
-    pub fn write_all(&mut self, vertices: &[DVec2], records: &[TraceRecord]) -> Result<(), WriteError> {
-        let at = |event: &Event| vertices[event.vertex as usize];
+    pub fn write_all(&mut self, scene: &Scene, records: &[TraceRecord]) -> Result<(), WriteError> {
         self.0.write_all(
             records,
-            |text, r| r.events.iter().try_for_each(|e| text::event_json(text, r.trace, e, at(e))),
-            |text, r| r.events.iter().try_for_each(|e| text::event_csv(text, r.trace, e, at(e))),
+            |text, r| r.events.iter().try_for_each(|e| text::event_json(text, &row(scene, r.trace, e))),
+            |text, r| r.events.iter().try_for_each(|e| text::event_csv(text, &row(scene, r.trace, e))),
             |table, r| {
                 r.events.iter().try_for_each(|e| {
-                    table.columns.push(r.trace, e, at(e));
+                    table.columns.push(&row(scene, r.trace, e));
                     table.flush_if_full()
                 })
             },
@@ -90,7 +89,12 @@ impl EventWriter {
     }
 }
 
-/// Writes the events of all `records` to `path`, as [`EventWriter`] does; `vertices` are the scene's.
+/// An event of a trace as rows have it.
+fn row<'e>(scene: &Scene, trace: u64, event: &'e Event) -> Row<'e> {
+    Row { trace, event, at: scene.vertices()[event.vertex as usize], y_down: scene.y_down() }
+}
+
+/// Writes the events of all `records` in `scene` to `path`, as [`EventWriter`] does.
 ///
 /// # Errors
 ///
@@ -99,9 +103,9 @@ impl EventWriter {
 /// # Panics
 ///
 /// If an event names a vertex that is not there.
-pub fn write_events(path: &Path, vertices: &[DVec2], records: &[TraceRecord]) -> Result<(), WriteError> {
+pub fn write_events(path: &Path, scene: &Scene, records: &[TraceRecord]) -> Result<(), WriteError> {
     let mut writer = EventWriter::create(path)?;
-    records.chunks(CHUNK).try_for_each(|records| writer.write_all(vertices, records))?;
+    records.chunks(CHUNK).try_for_each(|records| writer.write_all(scene, records))?;
     writer.finish()
 }
 
@@ -112,7 +116,7 @@ mod tests {
 
     #[test]
     fn rows_have_the_documented_form() {
-        let vertices = [DVec2::new(0.1, -3e-7), DVec2::new(1.0, 2.0)];
+        let scene = Scene::new([[[0.1, -3e-7].into(), [1.0, 2.0].into()]]).unwrap();
         let wrap = Event { step: 12, kind: EventKind::Wrap, vertex: 1, side: Side::Left };
         let unwrap = Event { step: 40, kind: EventKind::Unwrap, vertex: 0, side: Side::Right };
         let record = TraceRecord {
@@ -128,9 +132,9 @@ mod tests {
             events: vec![wrap, unwrap],
         };
         let folder = tempfile::tempdir().unwrap();
-        let written = |name: &str| {
+        let written = |name: &str, scene: &Scene| {
             let path = folder.path().join(name);
-            write_events(&path, &vertices, std::slice::from_ref(&record)).unwrap();
+            write_events(&path, scene, std::slice::from_ref(&record)).unwrap();
             std::fs::read_to_string(path).unwrap()
         };
         let lines = concat!(
@@ -139,8 +143,11 @@ mod tests {
             r#"{"trace":3,"step":40,"kind":"unwrap","vertex":0,"x":0.1,"y":-3e-7,"side":"right"}"#,
             "\n",
         );
-        assert_eq!(written("e.jsonl"), lines);
+        assert_eq!(written("e.jsonl", &scene), lines);
         let rows = "3,12,wrap,1,1.0,2.0,left\n3,40,unwrap,0,0.1,-3e-7,right\n";
-        assert_eq!(written("e.csv"), format!("trace,step,kind,vertex,x,y,side\n{rows}"));
+        assert_eq!(written("e.csv", &scene), format!("trace,step,kind,vertex,x,y,side\n{rows}"));
+        let down = scene.with_y_down();
+        let rows = "3,12,wrap,1,1.0,2.0,right\n3,40,unwrap,0,0.1,-3e-7,left\n";
+        assert_eq!(written("d.csv", &down), format!("trace,step,kind,vertex,x,y,side\n{rows}"));
     }
 }

@@ -128,6 +128,11 @@ mod tests {
     use super::*;
     use crate::output::{ResultWriter, write_results};
     use crate::rope::{Side, Status, TraceRecord};
+    use crate::scene::Scene;
+
+    fn nothing() -> Scene {
+        Scene::new([]).unwrap()
+    }
 
     fn record(trace: u64) -> TraceRecord {
         let wraps = (0..trace % 4).map(|i| ([i as f64, 0.5].into(), Side::Left)).collect();
@@ -146,7 +151,7 @@ mod tests {
     }
 
     fn written(path: &Path, traces: impl Iterator<Item = u64>) -> PathBuf {
-        write_results(path, &traces.map(record).collect::<Vec<_>>()).unwrap();
+        write_results(path, &nothing(), &traces.map(record).collect::<Vec<_>>()).unwrap();
         path.to_owned()
     }
 
@@ -187,10 +192,10 @@ mod tests {
         std::fs::write(at("text.parquet"), "no table at all").unwrap();
         assert!(fails(&at("text.parquet")).starts_with(&format!("cannot read {}", at("text.parquet").display())));
         let mut writer = ResultWriter::create(&at("turned.parquet")).unwrap();
-        writer.write_all(&[2, 1].map(record)).unwrap();
+        writer.write_all(&nothing(), &[2, 1].map(record)).unwrap();
         writer.finish().unwrap();
         assert!(fails(&at("turned.parquet")).ends_with("its rows are not in the order of their traces"));
-        crate::output::write_events(&at("events.parquet"), &[], &[]).unwrap();
+        crate::output::write_events(&at("events.parquet"), &nothing(), &[]).unwrap();
         assert!(fails(&at("events.parquet")).ends_with("its columns are not those of results"));
     }
 

@@ -6,6 +6,7 @@ use super::columns::ResultColumns;
 use super::rows::Rows;
 use super::{CHUNK, WholeFile, WriteError, text};
 use crate::rope::TraceRecord;
+use crate::scene::Scene;
 
 /// Writes results one by one to a file that appears when it is finished.
 ///
@@ -16,7 +17,8 @@ use crate::rope::TraceRecord;
 /// - `.parquet`: `wraps` as a list of structs of `x` and `y`, `pull` as such a struct or null. Parquet itself has
 ///   structs but no lists of fixed size, so this reads alike in pandas, polars and DuckDB.
 ///
-/// Lengths are in the scene's unit. Memory is bounded; it does not grow with the number of results.
+/// Lengths are in the scene's unit. `sides` are `left` and `right` as a picture of the scene shows them, so where y points
+/// down ([`Scene::y_down`]) they are not those of the records, which count as if it pointed up. Memory is bounded; it does not grow with the number of results.
 pub struct ResultWriter(Rows<ResultColumns>);
 
 impl ResultWriter {
@@ -29,13 +31,13 @@ impl ResultWriter {
         Ok(ResultWriter(Rows::create(path, text::RESULT_HEADER)?))
     }
 
-    /// Adds one result.
+    /// Adds one result in that scene.
     ///
     /// # Errors
     ///
     /// What the operating system says; the file cannot be finished after that.
-    pub fn write(&mut self, record: &TraceRecord) -> Result<(), WriteError> {
-        self.write_all(std::slice::from_ref(record))
+    pub fn write(&mut self, scene: &Scene, record: &TraceRecord) -> Result<(), WriteError> {
+        self.write_all(scene, std::slice::from_ref(record))
     }
 
     /// Adds results; the bytes are the same as one by one. Text is made on all cores and held until it is written.
@@ -43,11 +45,17 @@ impl ResultWriter {
     /// # Errors
     ///
     /// Those of [`write`](Self::write).
-    pub fn write_all(&mut self, records: &[TraceRecord]) -> Result<(), WriteError> {
-        self.0.write_all(records, text::result_json, text::result_csv, |table, record| {
-            table.columns.push(record);
-            table.flush_if_full()
-        })
+    pub fn write_all(&mut self, scene: &Scene, records: &[TraceRecord]) -> Result<(), WriteError> {
+        let y_down = scene.y_down();
+        self.0.write_all(
+            records,
+            |text, record| text::result_json(text, y_down, record),
+            |text, record| text::result_csv(text, y_down, record),
+            |table, record| {
+                table.columns.push(y_down, record);
+                table.flush_if_full()
+            },
+        )
     }
 
     /// Notes something about the results, where they come from say, in the metadata of a Parquet file; the other formats have
@@ -76,14 +84,14 @@ impl ResultWriter {
     }
 }
 
-/// Writes all `records` to `path`, as [`ResultWriter`] does.
+/// Writes all `records` in `scene` to `path`, as [`ResultWriter`] does.
 ///
 /// # Errors
 ///
 /// Those of [`check_output`](super::check_output), and what the operating system says.
-pub fn write_results(path: &Path, records: &[TraceRecord]) -> Result<(), WriteError> {
+pub fn write_results(path: &Path, scene: &Scene, records: &[TraceRecord]) -> Result<(), WriteError> {
     let mut writer = ResultWriter::create(path)?;
-    records.chunks(CHUNK).try_for_each(|records| writer.write_all(records))?;
+    records.chunks(CHUNK).try_for_each(|records| writer.write_all(scene, records))?;
     writer.finish()
 }
 
@@ -122,7 +130,7 @@ mod tests {
     fn written(name: &str, records: &[TraceRecord]) -> String {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
-        write_results(&path, records).unwrap();
+        write_results(&path, &Scene::new([]).unwrap(), records).unwrap();
         std::fs::read_to_string(path).unwrap()
     }
 
@@ -156,7 +164,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         for name in ["r.csv", "r.jsonl", "r.parquet"] {
             let mut writer = ResultWriter::create(&folder.path().join(name)).unwrap();
-            writer.write(&records()[0]).unwrap();
+            writer.write(&Scene::new([]).unwrap(), &records()[0]).unwrap();
             drop(writer);
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         }

@@ -114,8 +114,10 @@ mod tests {
 
     use super::*;
     use crate::output::columns::{EventColumns, ResultColumns};
+    use crate::output::text::Row;
     use crate::output::{write_events, write_results};
     use crate::rope::{Event, EventKind, Side, Status, TraceRecord};
+    use crate::scene::Scene;
 
     fn record(trace: u64) -> TraceRecord {
         let odd = trace % 2 == 1;
@@ -154,7 +156,8 @@ mod tests {
     fn results_come_back_across_batches() {
         let count = BATCH + 10;
         let records: Vec<_> = (0..count as u64).map(record).collect();
-        let (batch, bytes) = in_folder("r.parquet", |path| write_results(path, &records).unwrap());
+        let scene = Scene::new([]).unwrap();
+        let (batch, bytes) = in_folder("r.parquet", |path| write_results(path, &scene, &records).unwrap());
         assert_eq!(batch.num_rows(), count);
         assert_eq!(
             batch.schema().fields().iter().map(|f| f.name().as_str()).collect::<Vec<_>>(),
@@ -196,15 +199,23 @@ mod tests {
             let [x, y] = [0, 1].map(|i| pull.column(i).as_primitive::<Float64Type>().value(row));
             assert_eq!(pull.is_valid(row).then_some(DVec2::new(x, y)), r.pull);
         }
-        let (_, again) = in_folder("r.parquet", |path| write_results(path, &records).unwrap());
+        let (_, again) = in_folder("r.parquet", |path| write_results(path, &scene, &records).unwrap());
         assert!(bytes == again, "the bytes depend on more than the records");
+        // Where y points down, sides are those that a picture shows.
+        let down = Scene::new([]).unwrap().with_y_down();
+        let (batch, _) = in_folder("r.parquet", |path| write_results(path, &down, &records).unwrap());
+        for row in 0..4 {
+            let sides = batch.column_by_name("sides").unwrap().as_list::<i32>().value(row);
+            let found: Vec<_> = sides.as_string::<i32>().iter().map(Option::unwrap).collect();
+            assert_eq!(found, vec![if row % 2 == 1 { "right" } else { "left" }; row % 4]);
+        }
     }
 
     #[test]
     fn events_come_back() {
-        let vertices = [DVec2::new(0.1, 0.2), DVec2::new(-3e100, 4.0)];
+        let scene = Scene::new([[DVec2::new(0.1, 0.2), DVec2::new(-3e100, 4.0)]]).unwrap();
         let records: Vec<_> = (0..3).map(record).collect();
-        let (batch, _) = in_folder("e.parquet", |path| write_events(path, &vertices, &records).unwrap());
+        let (batch, _) = in_folder("e.parquet", |path| write_events(path, &scene, &records).unwrap());
         let column = |name: &str| batch.column_by_name(name).unwrap();
         assert_eq!(column("trace").as_primitive::<UInt64Type>().values().to_vec(), [0, 0, 1, 1, 2, 2]);
         assert_eq!(column("step").as_primitive::<UInt64Type>().values().to_vec(), [7; 6]);
@@ -214,13 +225,18 @@ mod tests {
         let names =
             |name| column(name).as_string::<i32>().iter().map(Option::unwrap).skip(1).take(2).collect::<Vec<_>>();
         assert_eq!((names("kind"), names("side")), (vec!["unwrap", "wrap"], vec!["right", "left"]));
+        let down = scene.clone().with_y_down();
+        let (batch, _) = in_folder("e.parquet", |path| write_events(path, &down, &records).unwrap());
+        let sides: Vec<_> =
+            batch.column_by_name("side").unwrap().as_string::<i32>().iter().map(Option::unwrap).collect();
+        assert_eq!(sides, ["left", "left", "right", "right", "left", "left"]);
     }
 
     #[test]
     fn a_file_without_rows_has_its_columns() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("r.parquet");
-        write_results(&path, &[]).unwrap();
+        write_results(&path, &Scene::new([]).unwrap(), &[]).unwrap();
         let builder = ParquetRecordBatchReaderBuilder::try_new(File::open(&path).unwrap()).unwrap();
         assert_eq!(builder.schema().fields().len(), 11);
         assert_eq!(builder.schema().field(0).data_type(), &DataType::UInt64);
@@ -241,7 +257,7 @@ mod tests {
         let mut many = Table::<EventColumns>::new(&path, onto_full()).unwrap();
         let event = record(1).events[0];
         let failed = (0..1_000_000u64).find_map(|i| {
-            many.columns.push(i, &event, DVec2::new(i as f64, 0.0));
+            many.columns.push(&Row { trace: i, event: &event, at: DVec2::new(i as f64, 0.0), y_down: false });
             many.flush_if_full().err()
         });
         assert_eq!(failed.unwrap().to_string(), expected);

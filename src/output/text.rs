@@ -28,8 +28,7 @@ struct ResultLine<'a> {
     events: usize,
     #[serde(serialize_with = "positions")]
     wraps: &'a [(DVec2, Side)],
-    #[serde(serialize_with = "sides")]
-    sides: &'a [(DVec2, Side)],
+    sides: Sides<'a>,
     pull: Option<[f64; 2]>,
 }
 
@@ -37,8 +36,22 @@ fn positions<S: Serializer>(wraps: &&[(DVec2, Side)], serializer: S) -> Result<S
     serializer.collect_seq(wraps.iter().map(|(at, _)| at.to_array()))
 }
 
-fn sides<S: Serializer>(wraps: &&[(DVec2, Side)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(wraps.iter().map(|(_, side)| side.name()))
+/// The sides of turns, as a picture shows them.
+struct Sides<'a> {
+    wraps: &'a [(DVec2, Side)],
+    y_down: bool,
+}
+
+impl Sides<'_> {
+    fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.wraps.iter().map(|(_, side)| side.shown(self.y_down).name())
+    }
+}
+
+impl Serialize for Sides<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.names())
+    }
 }
 
 /// An event as a JSON object; the fields' order is the keys'.
@@ -53,7 +66,7 @@ struct EventLine {
     side: &'static str,
 }
 
-pub(super) fn result_json(out: &mut impl Write, r: &TraceRecord) -> io::Result<()> {
+pub(super) fn result_json(out: &mut impl Write, y_down: bool, r: &TraceRecord) -> io::Result<()> {
     let line = ResultLine {
         trace: r.trace,
         status: r.status.name(),
@@ -64,14 +77,14 @@ pub(super) fn result_json(out: &mut impl Write, r: &TraceRecord) -> io::Result<(
         max_depth: r.max_depth,
         events: r.events.len(),
         wraps: &r.wraps,
-        sides: &r.wraps,
+        sides: Sides { wraps: &r.wraps, y_down },
         pull: r.pull.map(|p| p.to_array()),
     };
     serde_json::to_writer(&mut *out, &line)?;
     out.write_all(b"\n")
 }
 
-pub(super) fn result_csv(out: &mut impl Write, r: &TraceRecord) -> io::Result<()> {
+pub(super) fn result_csv(out: &mut impl Write, y_down: bool, r: &TraceRecord) -> io::Result<()> {
     write!(out, "{},{},{},", r.trace, r.status.name(), r.steps)?;
     number(out, r.length)?;
     out.write_all(b",")?;
@@ -84,9 +97,9 @@ pub(super) fn result_csv(out: &mut impl Write, r: &TraceRecord) -> io::Result<()
         number(out, at.y)?;
     }
     out.write_all(b",")?;
-    for (i, (_, side)) in r.wraps.iter().enumerate() {
+    for (i, side) in (Sides { wraps: &r.wraps, y_down }).names().enumerate() {
         out.write_all(if i == 0 { b"" } else { b";" })?;
-        out.write_all(side.name().as_bytes())?;
+        out.write_all(side.as_bytes())?;
     }
     out.write_all(b",")?;
     if let Some(pull) = r.pull {
@@ -99,19 +112,38 @@ pub(super) fn result_csv(out: &mut impl Write, r: &TraceRecord) -> io::Result<()
     out.write_all(b"\n")
 }
 
-pub(super) fn event_json(out: &mut impl Write, trace: u64, e: &Event, at: DVec2) -> io::Result<()> {
-    let Event { step, kind, vertex, side } = *e;
-    let line = EventLine { trace, step, kind: kind.name(), vertex, x: at.x, y: at.y, side: side.name() };
+/// An event as rows have it.
+pub(super) struct Row<'a> {
+    pub trace: u64,
+    pub event: &'a Event,
+    /// Where the vertex stands.
+    pub at: DVec2,
+    /// Whether the scene's y points down.
+    pub y_down: bool,
+}
+
+impl Row<'_> {
+    /// The side as a picture shows it.
+    pub(super) fn side(&self) -> &'static str {
+        self.event.side.shown(self.y_down).name()
+    }
+}
+
+pub(super) fn event_json(out: &mut impl Write, row: &Row<'_>) -> io::Result<()> {
+    let Row { trace, at, .. } = *row;
+    let Event { step, kind, vertex, .. } = *row.event;
+    let line = EventLine { trace, step, kind: kind.name(), vertex, x: at.x, y: at.y, side: row.side() };
     serde_json::to_writer(&mut *out, &line)?;
     out.write_all(b"\n")
 }
 
-pub(super) fn event_csv(out: &mut impl Write, trace: u64, e: &Event, at: DVec2) -> io::Result<()> {
-    write!(out, "{trace},{},{},{},", e.step, e.kind.name(), e.vertex)?;
-    number(out, at.x)?;
+pub(super) fn event_csv(out: &mut impl Write, row: &Row<'_>) -> io::Result<()> {
+    let Event { step, kind, vertex, .. } = *row.event;
+    write!(out, "{},{step},{},{vertex},", row.trace, kind.name())?;
+    number(out, row.at.x)?;
     out.write_all(b",")?;
-    number(out, at.y)?;
-    writeln!(out, ",{}", e.side.name())
+    number(out, row.at.y)?;
+    writeln!(out, ",{}", row.side())
 }
 
 pub(super) fn number(out: &mut impl Write, x: f64) -> io::Result<()> {

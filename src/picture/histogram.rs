@@ -2,9 +2,9 @@
 
 use super::chart::{Chart, WIDTH, legend};
 use super::colour::{BLUE, INK, MUTED, SKY, VERMILION};
-use super::label::{estimate, number, percent, quantity};
+use super::label::{estimate, number, percent};
 use super::svg::{Align, Svg};
-use crate::study::{Bin, Estimate, Summary};
+use crate::study::{Bin, Estimate, Summary, quantity};
 
 /// Bars narrower than this have no room for an error bar each.
 const NARROW: f64 = 5.0;

@@ -116,19 +116,6 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     ems.sum::<f64>() * size
 }
 
-/// What a scalar or a histogram of this name is about.
-pub(super) fn quantity(name: &str) -> String {
-    match name {
-        "length" => "rope length at the end".into(),
-        "max_length" => "greatest rope length".into(),
-        "depth" => "wraps on the rope at the end".into(),
-        "max_depth" => "most wraps on the rope".into(),
-        "wraps" => "wraps made".into(),
-        "unwraps" => "wraps undone".into(),
-        _ => name.replace('_', " "),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -26,7 +26,7 @@ mod ticks;
 mod tradeoff;
 
 use crate::scene::Scene;
-use crate::study::Summary;
+use crate::study::{Summary, quantity};
 
 pub use drawing::{DrawError, Drawing, MOST_FRAMES, Part, Theme};
 pub use gallery::Situation;
@@ -45,7 +45,7 @@ pub fn all(summary: &Summary, scene: &Scene) -> Vec<(String, String, String)> {
         let title = match h.name.as_str() {
             "length" => "How long the ropes are at the end".to_string(),
             "max_length" => "How long the ropes are at their longest".to_string(),
-            _ => format!("Histogram of the {}", label::quantity(&h.name)),
+            _ => format!("Histogram of the {}", quantity(&h.name)),
         };
         all.push((format!("histogram-{}", h.name.replace('_', "-")), title, histogram(summary, &h.name)));
     }

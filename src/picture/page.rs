@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::label::{count, number};
 use super::svg::escape;
 use super::tables;
-use crate::study::{ScenePlan, Stopped, Summary};
+use crate::study::{AtWalls, ScenePlan, Stopped, Summary};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -37,7 +37,7 @@ pub fn page(summary: &Summary, pictures: &[(String, String)], run: Option<&Value
     section("Pictures", !pictures.is_empty(), figures(pictures));
     section("Obstacles that ropes are wound about", !summary.obstacles.is_empty(), tables::obstacles(summary));
     section("Commonest ropes at the end", !summary.ropes.is_empty(), tables::ropes(summary));
-    section("Wall ends touched the longest", !summary.contacts.is_empty(), tables::contacts(summary));
+    section("Wall ends with the longest contacts", !summary.contacts.is_empty(), tables::contacts(summary));
     let plan = serde_json::to_value(&summary.study).unwrap_or_default();
     section("Parameters", true, tables::values(&plan));
     section("Run", run.is_some(), run.map(tables::values).unwrap_or_default());
@@ -53,9 +53,17 @@ fn facts(summary: &Summary) -> String {
         Stopped::Seconds => "the time was over",
         Stopped::Unfinished => "not finished",
     };
+    let share = |share: Option<f64>| share.map_or("–".to_owned(), |s| format!("{} %", number(100.0 * s, None)));
+    let at_walls = match summary.study.walk.at_walls() {
+        Some(AtWalls::Reject) => "steps not taken at walls",
+        Some(AtWalls::Reflect) => "steps thrown back at walls",
+        Some(AtWalls::Redraw) | None => "steps drawn again at walls",
+    };
     let facts = [
         ("traces", count(summary.traces)),
         ("steps", count(summary.steps)),
+        ("steps that stood still", share(summary.still)),
+        (at_walls, share(summary.at_walls)),
         ("wraps and unwraps", count(summary.events)),
         ("blocks", count(summary.blocks)),
         ("ended", stopped.into()),

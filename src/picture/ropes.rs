@@ -74,7 +74,7 @@ fn draw(svg: &mut Svg, frame: &Frame, rope: &CommonRope) {
         let outlined = format!("fill=\"{MUTED}\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"");
         svg.text(at, Align::Start, &outlined, "straight");
     }
-    let left = |i: usize| rope.sides.get(i).is_some_and(|s| (s == "left") != frame.mirrored());
+    let left = |i: usize| rope.sides.get(i).is_some_and(|s| s == "left");
     if let [.., before, last] = line[..] {
         free_end(svg, before, last, left(turns.len() - 1));
     }

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::label::{count, interval, number, percent, quantity, resolution};
+use super::label::{count, interval, number, percent, resolution};
 use super::svg::escape;
-use crate::study::{Estimate, Summary};
+use crate::study::{Estimate, Summary, quantity};
 
 /// How many rows the tables of obstacles and of wall ends have at the most.
 const ROWS: usize = 20;
@@ -46,7 +46,7 @@ pub(super) fn scalars(summary: &Summary) -> String {
         let plain = |x: f64| number(x, None);
         let optional = |x: Option<String>| x.unwrap_or_else(|| "–".into());
         let mut row = vec![
-            quantity(&s.name),
+            quantity(&s.name).to_owned(),
             number(s.mean.value, resolution(&s.mean)),
             optional(s.mean.error.map(|e| number(e, Some(e)))),
             optional(interval(&s.mean)),
@@ -77,7 +77,7 @@ pub(super) fn obstacles(summary: &Summary) -> String {
             plain(&o.mean),
         ]
     });
-    let head = ["wall end", "at", "walls", "wound", "counter-clockwise", "clockwise", "mean times round"];
+    let head = ["obstacle", "at", "walls", "wound", "counter-clockwise", "clockwise", "mean times round"];
     table("numbers", &head, rows) + &left_out(summary.obstacles.len(), "obstacles")
 }
 

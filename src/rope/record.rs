@@ -33,7 +33,7 @@ pub struct Event {
     pub kind: EventKind,
     /// Which vertex of the scene.
     pub vertex: u32,
-    /// The side on which the vertex lies.
+    /// The side on which the vertex lies, as if y pointed up: [`Side::shown`] is what a picture shows.
     pub side: Side,
 }
 
@@ -87,11 +87,12 @@ pub struct TraceRecord {
     pub length: f64,
     /// The largest of its lengths after every step.
     pub max_length: f64,
-    /// The number of contacts of the taut rope at the end.
+    /// The number of turns of the taut rope at the end.
     pub depth: u32,
     /// The largest of its depths after every step.
     pub max_depth: u32,
-    /// The taut rope at the end, from the anchor: vertex position and side.
+    /// The taut rope at the end: its turns from the anchor, each with its vertex's position and the side on which that lies, as
+    /// if y pointed up.
     pub wraps: Vec<(DVec2, Side)>,
     /// The unit vector along which the rope pulls the free end at the end; `None` for a rope of no length.
     pub pull: Option<DVec2>,

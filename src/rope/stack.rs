@@ -5,6 +5,9 @@ use glam::DVec2;
 use crate::geometry::{forwards, orient};
 
 /// The side on which a contact lies: the rope turns towards it, or passes it straight.
+///
+/// Engines compute as if y pointed upwards, whatever the scene says. In a scene whose y points down, a picture shows the
+/// other side: what is written or drawn for people and other programs is [`shown`](Self::shown).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
     /// The vertex lies left of the rope as seen from the anchor: the rope turns counter-clockwise there.
@@ -19,6 +22,20 @@ impl Side {
         match self {
             Side::Left => "left",
             Side::Right => "right",
+        }
+    }
+
+    /// The side on which a picture shows it: the same where y points up, the other one where it points down
+    /// ([`Scene::y_down`](crate::scene::Scene::y_down)).
+    ///
+    /// ```
+    /// use tautline::rope::Side;
+    /// assert_eq!([Side::Left.shown(false), Side::Left.shown(true)], [Side::Left, Side::Right]);
+    /// ```
+    pub fn shown(self, y_down: bool) -> Side {
+        match (self, y_down) {
+            (Side::Left, false) | (Side::Right, true) => Side::Left,
+            (Side::Right, false) | (Side::Left, true) => Side::Right,
         }
     }
 

@@ -7,6 +7,8 @@
 
 use glam::{DAffine2, DVec2};
 
+use super::extent::extent;
+use super::flattened::Flattened;
 use super::pen::Pen;
 use super::{Object, Wall};
 use crate::geometry::number;
@@ -68,11 +70,6 @@ impl Ellipse {
         let DVec2 { x: bx, y: by } = self.b;
         (libm::hypot(ax + by, ay - bx) + libm::hypot(ax - by, ay + bx)) / 2.0
     }
-
-    /// Half the size of the box round the whole ellipse.
-    fn reach(&self) -> DVec2 {
-        DVec2::new(libm::hypot(self.a.x, self.b.x), libm::hypot(self.a.y, self.b.y))
-    }
 }
 
 /// The unit vector at `degrees` from the x axis towards the y axis; exact at quarter turns.
@@ -89,26 +86,13 @@ pub(super) fn direction(degrees: f64) -> DVec2 {
     }
 }
 
-/// What the curves of a drawing have become.
-pub(super) struct Flattened {
-    pub(super) objects: Vec<Object>,
-    pub(super) walls: Vec<Wall>,
-    /// How many curves there are, and within what distance of them their walls lie.
-    pub(super) curves: usize,
-    pub(super) tolerance: f64,
-}
-
-impl Flattened {
-    /// A sentence about the curves, if there are any.
-    pub(super) fn note(&self) -> Option<String> {
-        let Flattened { curves, tolerance, .. } = self;
-        (*curves > 0).then(|| {
-            format!(
-                "walls lie within {} of the curves that they stand for (--flatten); curves: {curves}",
-                number(*tolerance)
-            )
-        })
-    }
+/// What a part of a drawing is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Since {
+    /// How many lines and curves.
+    pub(super) lines: usize,
+    /// Whether each line ends where it began.
+    pub(super) closed: bool,
 }
 
 impl Outlines {
@@ -116,6 +100,14 @@ impl Outlines {
     pub(super) fn begin(&mut self, object: Object) {
         self.objects.push(object);
         self.pieces.push(Piece::Object);
+    }
+
+    /// Takes the last object back, for which nothing was drawn.
+    pub(super) fn take_back(&mut self) {
+        if let Some(Piece::Object) = self.pieces.last() {
+            self.pieces.pop();
+            self.objects.pop();
+        }
     }
 
     /// A pen that draws here what it is told in other coordinates.
@@ -128,27 +120,31 @@ impl Outlines {
         self.pieces.len()
     }
 
-    /// A box that surely holds everything; `None` if there is nothing.
+    /// The lowest and highest x and y of what is drawn; `None` if there is nothing.
     pub(super) fn bounds(&self) -> Option<[DVec2; 2]> {
-        let mut bounds: Option<[DVec2; 2]> = None;
-        let mut add = |low: DVec2, high: DVec2| {
-            let [l, h] = bounds.unwrap_or([low, high]);
-            bounds = Some([l.min(low), h.max(high)]);
-        };
-        for piece in &self.pieces {
+        extent(&self.pieces, DAffine2::IDENTITY)
+    }
+
+    /// What was drawn since there were `from` pieces.
+    pub(super) fn since(&self, from: usize) -> Since {
+        let mut since = Since { lines: 0, closed: true };
+        // Where the line began and where it is.
+        let mut line: Option<[DVec2; 2]> = None;
+        for piece in &self.pieces[from..] {
             match piece {
                 Piece::Object => {}
-                Piece::Start(p) | Piece::Line(p) => add(*p, *p),
-                Piece::Curve(curve, end) => {
-                    add(*end, *end);
-                    match &**curve {
-                        Curve::Bezier(points) => points.iter().for_each(|p| add(*p, *p)),
-                        Curve::Ellipse(e) => add(e.centre - e.reach(), e.centre + e.reach()),
-                    }
+                Piece::Start(p) => {
+                    since.closed &= line.is_none_or(|[first, last]| first == last);
+                    line = Some([*p, *p]);
+                }
+                Piece::Line(p) | Piece::Curve(_, p) => {
+                    since.lines += 1;
+                    line = line.map(|[first, _]| [first, *p]);
                 }
             }
         }
-        bounds
+        since.closed &= line.is_none_or(|[first, last]| first == last);
+        since
     }
 
     /// All walls; those of curves lie within `tolerance` of them, or within a sensible part of the drawing's size.
@@ -225,7 +221,7 @@ impl Curve {
     }
 
     /// The point at `t` between 0 and 1.
-    fn at(&self, t: f64) -> DVec2 {
+    pub(super) fn at(&self, t: f64) -> DVec2 {
         match self {
             Curve::Bezier(points) => {
                 let mut points = points.clone();

@@ -3,6 +3,8 @@
 mod cells;
 mod curves;
 mod dxf;
+mod extent;
+mod flattened;
 mod geographic;
 mod geojson;
 mod grid;
@@ -167,7 +169,8 @@ impl Scene {
     }
 
     /// Whether y points down when the scene is looked at as its file means it: pictures show it so. Nothing is computed
-    /// otherwise for it; left and right are those of a reader for whom y points up.
+    /// otherwise for it, but what is written for others names left, right and clockwise as the picture shows them
+    /// ([`Side::shown`](crate::rope::Side::shown)).
     pub fn y_down(&self) -> bool {
         self.y_down
     }
@@ -192,6 +195,17 @@ impl Scene {
 fn listed(counts: &BTreeMap<&str, usize>) -> String {
     let all: Vec<String> = counts.iter().map(|(name, count)| format!("{count} {name}")).collect();
     all.join(", ")
+}
+
+/// Whether `name` looks as if it was to mark the anchor, such as `Anchor`, `anchors` and `anchor 2`, but for the right one.
+fn nearly_anchor(name: &str) -> bool {
+    let name = name.trim();
+    if !name.get(..6).is_some_and(|start| start.eq_ignore_ascii_case("anchor")) {
+        return false;
+    }
+    let rest = name[6..].to_lowercase();
+    let rest = rest.strip_prefix('s').unwrap_or(&rest);
+    rest.starts_with("point") || !rest.starts_with(char::is_alphabetic)
 }
 
 /// The start of `text`: a line of some other file may be very long.

@@ -56,7 +56,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
 ///
 /// ```
 /// use tautline::scene::{SceneOptions, read_scene_with};
-/// let path = std::env::temp_dir().join("tautline-doc-room.svg");
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("room.svg");
 /// std::fs::write(&path, r#"<svg xmlns="http://www.w3.org/2000/svg"><circle id="anchor" cx="2" cy="1" r=".1"/>
 ///     <rect width="4" height="3"/><path d="M1,0 Q1,2 3,2"/></svg>"#)?;
 /// let scene = read_scene_with(&path, &SceneOptions { flatten: Some(0.1), ..Default::default() })?;

@@ -73,7 +73,7 @@ impl Plan {
     /// ```
     /// use tautline::study::{EXAMPLE, Plan};
     /// let plan = Plan::parse(EXAMPLE)?;
-    /// assert_eq!(plan.run.traces, 10_000);
+    /// assert_eq!(plan.run.traces, Some(10_000));
     /// let wrong = EXAMPLE.replace("block", "blok");
     /// assert!(Plan::parse(&wrong).unwrap_err().what.contains("did you mean `block`?"));
     /// # Ok::<(), tautline::study::PlanError>(())
@@ -120,7 +120,7 @@ impl Plan {
         }
         self.walk.check()?;
         let run = &self.run;
-        if run.traces == 0 || run.block == 0 {
+        if run.traces == Some(0) || run.block == 0 {
             return err("run: `traces` and `block` must be at least 1".into());
         }
         if run.stride == 0 {
@@ -133,11 +133,11 @@ impl Plan {
             ));
         }
         if self.blocks() > MOST_BLOCKS {
-            let least = run.traces.div_ceil(MOST_BLOCKS);
+            let least = run.count().div_ceil(MOST_BLOCKS);
             let most = MOST_BLOCKS * u64::from(u32::MAX);
             return err(match u32::try_from(least) {
-                Ok(least) => format!("run.block: {} traces need blocks of at least {least}", run.traces),
-                Err(_) => format!("run.traces: {} are too many; at most {most} will do", run.traces),
+                Ok(least) => format!("run.block: {} traces need blocks of at least {least}", run.count()),
+                Err(_) => format!("run.traces: {} are too many; at most {most} will do", run.count()),
             });
         }
         if let Some(steps) = self.walk.steps() {
@@ -176,9 +176,9 @@ impl Plan {
         Ok(())
     }
 
-    /// How many blocks it has.
+    /// How many blocks it has. O(1).
     pub fn blocks(&self) -> u64 {
-        self.run.traces.div_ceil(u64::from(self.run.block))
+        self.run.count().div_ceil(u64::from(self.run.block))
     }
 
     /// Whether its traces come from a file.

@@ -9,7 +9,7 @@ use crate::scene::Model;
 use crate::visibility::Visibility;
 
 /// How many points are drawn in vain, one after the other, before none is.
-const TRIES: u32 = 1 << 16;
+pub(super) const TRIES: u32 = 1 << 16;
 
 /// The free space in which a model's anchor lies, within the scene's bounding box.
 pub(super) struct FreeSpace<'a> {

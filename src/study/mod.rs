@@ -24,7 +24,7 @@ pub use run::{RunError, Spent, run};
 pub use state::{Shard, State, StateError, merge};
 pub use summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Stopped, Summary, Survival,
-    SurvivalPoint, Traded,
+    SurvivalPoint, Traded, quantity,
 };
 pub(crate) use tally::Moments;
 pub use walk::Walks;

@@ -13,11 +13,11 @@ use super::random::{Purpose, Random};
 use super::tally::Setting;
 use super::walk::Walks;
 use crate::example::BuiltIn;
-use crate::geometry::number;
+use crate::geometry::{Shown, number};
 use crate::read_file::open;
 use crate::scene::{AnchorError, Model, Scene, read_scene};
 use crate::simplify::simplify;
-use crate::trace::{SettledTrace, Trace, TraceReader, settle_owned};
+use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
 
 /// A study that can be run.
 pub struct Study {
@@ -40,7 +40,7 @@ impl Study {
     /// What [`Plan::checked`] says, a scene that cannot be read or has no place for the rope, a walk that cannot be walked
     /// there.
     pub fn open(plan: Plan, folder: &Path) -> Result<Self, PlanError> {
-        let plan = plan.checked()?;
+        let plan = counted(plan.checked()?, folder)?;
         let scene = match (&plan.scene.built_in, &plan.scene.file) {
             (Some(name), _) => {
                 let built_in: BuiltIn = name.parse().map_err(|e| PlanError::new(format!("scene.built_in: {e}")))?;
@@ -93,7 +93,7 @@ impl Study {
     /// The numbers of the traces of a block.
     pub fn block(&self, block: u64) -> Range<u64> {
         let size = u64::from(self.plan.run.block);
-        block * size..((block + 1) * size).min(self.plan.run.traces)
+        block * size..((block + 1) * size).min(self.plan.run.count())
     }
 
     /// Trace `number`, the same on every machine. O(its steps) where it is drawn; where the traces come from a file, that is
@@ -103,8 +103,17 @@ impl Study {
     ///
     /// A file that cannot be read or has no such trace.
     pub fn trace(&self, number: u64) -> Result<SettledTrace, PlanError> {
+        self.whole_trace(number).map(|trace| self.traded(trace))
+    }
+
+    /// The same as it was drawn or given, before anything was left out of it for speed.
+    ///
+    /// # Errors
+    ///
+    /// As [`trace`](Self::trace).
+    pub fn whole_trace(&self, number: u64) -> Result<SettledTrace, PlanError> {
         let Some(path) = &self.given else {
-            return Ok(self.source(number)?.take(number..number + 1)?.remove(0));
+            return Ok(self.drawn(number));
         };
         let none = || PlanError::new(format!("there is no trace {number}")).at(path);
         let mut reader = TraceReader::open(path).map_err(|e| PlanError::new(e.to_string()))?;
@@ -121,21 +130,49 @@ impl Study {
         self.setting.model(number)
     }
 
-    /// A trace that is drawn.
+    /// A trace that is drawn, as it is drawn.
     fn drawn(&self, number: u64) -> SettledTrace {
-        self.traded(self.walks[self.setting.anchor(number)].trace(number))
+        self.walks[self.setting.anchor(number)].trace(number)
     }
 
-    /// A trace of the file.
+    /// A trace of the file, as it stands there.
     fn settled(&self, trace: Trace) -> SettledTrace {
         let model = &self.given_models[self.setting.anchor(trace.id)];
-        self.traded(settle_owned(model, trace))
+        let settled = settle_owned(model, trace);
+        let still = settled.still();
+        settled.with_walked(Walked { still, met: 0 })
     }
 
     /// A trace as ropes see it.
     fn traded(&self, trace: SettledTrace) -> SettledTrace {
         let (run, model) = (&self.plan.run, self.model(trace.id()));
         if run.is_traded() { trace.coarsened(model, run.stride as usize) } else { trace }
+    }
+
+    /// Refuses a study whose walks all stand still: no step of the first traces, one at least from each anchor and five in
+    /// all, leads anywhere. O(steps) of the first trace that moves, and all that was tried for those that do not.
+    ///
+    /// # Errors
+    ///
+    /// How many traces were drawn in vain, from where, and how long their steps are.
+    pub fn check_moves(&self) -> Result<(), PlanError> {
+        let Some(step) = self.plan.walk.step() else { return Ok(()) };
+        let few = self.plan.run.count().min(5.max(self.models().len() as u64));
+        let mut steps = 0;
+        for number in 0..few {
+            let trace = self.drawn(number);
+            if trace.walked().still < trace.steps() {
+                return Ok(());
+            }
+            steps += trace.steps();
+        }
+        let start = *self.drawn(0).ends().last().expect("a trace has points");
+        Err(PlanError::new(format!(
+            "walk: all walks stand still: none of the {steps} steps of the first {few} traces leads anywhere, that of trace 0 \
+             from {}, since each would meet a wall or the border of the scene; give a step shorter than {}, or another anchor",
+            Shown(start),
+            number(step)
+        )))
     }
 
     /// How many wall ends there are before any are left out.
@@ -159,9 +196,16 @@ impl Study {
         Ok(Source { study: self, reader, next: first })
     }
 
+    /// What is wrong with the file of traces.
+    fn in_file(&self, what: String) -> PlanError {
+        let error = PlanError::new(what);
+        self.given.iter().fold(error, |error, path| error.at(path))
+    }
+
     /// What is said of a file of so many traces.
     fn too_few(&self, there: u64) -> PlanError {
-        PlanError::new(format!("run.traces: {} are asked for, but the file holds {there}", self.plan.run.traces))
+        let asked = self.plan.run.count();
+        self.in_file(format!("run.traces: {asked} are asked for, but the file holds {there}"))
     }
 }
 
@@ -176,7 +220,7 @@ impl Source<'_> {
     /// The traces with these numbers, in order; those before them are passed over.
     pub(super) fn take(&mut self, numbers: Range<u64>) -> Result<Vec<SettledTrace>, PlanError> {
         let Some(reader) = &mut self.reader else {
-            return Ok(numbers.into_par_iter().map(|number| self.study.drawn(number)).collect());
+            return Ok(numbers.into_par_iter().map(|number| self.study.traded(self.study.drawn(number))).collect());
         };
         let there = self.next + skip(reader, numbers.start - self.next)?;
         if there < numbers.start {
@@ -190,10 +234,10 @@ impl Source<'_> {
             let Some(more) = more else {
                 return Err(self.study.too_few(there + settled.len() as u64));
             };
-            settled.par_extend(more.into_par_iter().map(|trace| self.study.settled(trace)));
+            settled.par_extend(more.into_par_iter().map(|trace| self.study.traded(self.study.settled(trace))));
         }
         match settled.iter().find_map(|t| t.violation()) {
-            Some(violation) => Err(PlanError::new(violation.to_string())),
+            Some(violation) => Err(self.study.in_file(violation.to_string())),
             None => Ok(settled),
         }
     }
@@ -210,6 +254,24 @@ fn skip(reader: &mut TraceReader, count: u64) -> Result<u64, PlanError> {
         }
     }
     Ok(skipped)
+}
+
+/// The plan with the number of its traces: where it does not say how many of a file it takes, all that there are. Reads the
+/// file to its end for that.
+fn counted(mut plan: Plan, folder: &Path) -> Result<Plan, PlanError> {
+    let count = match (&plan.walk, plan.run.traces) {
+        (WalkPlan::Given { file }, None) => {
+            let path = folder.join(file);
+            let mut reader = TraceReader::open(&path).map_err(|e| PlanError::new(e.to_string()))?;
+            match skip(&mut reader, u64::MAX)? {
+                0 => return Err(PlanError::new("there are no traces in it").at(&path)),
+                count => count,
+            }
+        }
+        _ => plan.run.count(),
+    };
+    plan.run.traces = Some(count);
+    plan.checked()
 }
 
 /// The same with fewer wall ends, if the plan says so.
@@ -250,7 +312,7 @@ fn models(plan: &Plan, scene: &Scene) -> Result<Vec<Arc<Model>>, PlanError> {
 
 /// Part of every study's identity. The number is to be raised whenever traces are drawn, counted or estimated in another way, so
 /// that no study goes on with what came out before.
-const ANSWERS: &[u8] = b"tautline study 2\n";
+const ANSWERS: &[u8] = b"tautline study 3\n";
 
 fn identity(plan: &Plan, models: &[Arc<Model>], given: Option<&Path>) -> Result<String, PlanError> {
     let mut hasher = blake3::Hasher::new();

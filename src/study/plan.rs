@@ -161,8 +161,9 @@ pub enum AtWalls {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RunPlan {
-    /// How many traces.
-    pub traces: u64,
+    /// How many traces; without it all that a given file holds, and 10,000 drawn ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub traces: Option<u64>,
     /// How many traces a block has: what is computed, saved and handed out as one.
     pub block: u32,
     /// What all random numbers are made from.
@@ -183,7 +184,16 @@ fn is_one(stride: &u32) -> bool {
     *stride == 1
 }
 
+/// How many traces are drawn unless told otherwise.
+const TRACES: u64 = 10_000;
+
 impl RunPlan {
+    /// How many traces there are: those that it asks for, else 10,000. Of given traces that is only known once the file was
+    /// read: the plan of a [`Study`](super::Study) says it.
+    pub fn count(&self) -> u64 {
+        self.traces.unwrap_or(TRACES)
+    }
+
     /// Whether accuracy is given for speed, other than by precision.
     pub fn is_traded(&self) -> bool {
         self.stride > 1 || self.simplify.is_some()
@@ -192,7 +202,7 @@ impl RunPlan {
 
 impl Default for RunPlan {
     fn default() -> Self {
-        RunPlan { traces: 10_000, block: 1000, seed: 1, precision: Precision::Certified, stride: 1, simplify: None }
+        RunPlan { traces: None, block: 1000, seed: 1, precision: Precision::Certified, stride: 1, simplify: None }
     }
 }
 
@@ -250,6 +260,27 @@ impl Default for OutputPlan {
 }
 
 impl WalkPlan {
+    /// The length of a step, or the standard deviation of one in x and in y; `None` for given traces.
+    pub fn step(&self) -> Option<f64> {
+        match *self {
+            WalkPlan::Uniform { step, .. }
+            | WalkPlan::Gaussian { step, .. }
+            | WalkPlan::Persistent { step, .. }
+            | WalkPlan::Waypoints { step, .. } => Some(step),
+            WalkPlan::Given { .. } => None,
+        }
+    }
+
+    /// What becomes of a step that meets a wall; `None` for traces none of whose steps is drawn so.
+    pub fn at_walls(&self) -> Option<AtWalls> {
+        match *self {
+            WalkPlan::Uniform { at_walls, .. }
+            | WalkPlan::Gaussian { at_walls, .. }
+            | WalkPlan::Persistent { at_walls, .. } => Some(at_walls),
+            WalkPlan::Waypoints { .. } | WalkPlan::Given { .. } => None,
+        }
+    }
+
     /// How many steps each trace has; `None` for given traces.
     pub fn steps(&self) -> Option<u32> {
         match *self {

@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 /// How many blocks are made at once, so that several are made in one instruction. The order of the words depends on it, and so
 /// do all traces.
-const BLOCKS: usize = 8;
+pub(in crate::study) const BLOCKS: usize = 8;
 
 /// The low half of a word.
 const LOW: u64 = u32::MAX as u64;

@@ -13,7 +13,7 @@ use super::tally::Tallies;
 use crate::output::{WholeFile, WriteError};
 
 /// What a state file begins with. The number changes when the format does.
-const MAGIC: &[u8] = b"tautline study state 2\n";
+const MAGIC: &[u8] = b"tautline study state 3\n";
 
 /// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -25,11 +25,14 @@ impl State {
         let (setting, counts) = (&study.setting, &self.tallies.counts);
         let confidence = Confidence::new(plan.tallies.confidence);
         let moments = self.tallies.scalars();
+        let steps = counts.looks.sum - counts.traces.sum;
         Summary {
             study: plan.clone(),
             identity: self.identity.clone(),
             traces: counts.traces.sum,
-            steps: counts.looks.sum - counts.traces.sum,
+            steps,
+            still: share_of(counts.still, steps),
+            at_walls: plan.walk.at_walls().and_then(|_| share_of(counts.met, steps)),
             events: counts.events,
             blocks: counts.traces.blocks,
             traded: plan.run.is_traded().then(|| Traded {
@@ -50,6 +53,11 @@ impl State {
             map: map(&confidence, setting, counts),
         }
     }
+}
+
+/// Which share of the steps so many are; `None` where there are no steps.
+fn share_of(count: u64, steps: u64) -> Option<f64> {
+    (steps > 0).then(|| count as f64 / steps as f64)
 }
 
 fn scalars(confidence: &Confidence, moments: &[Moments], counts: &Counts) -> Vec<Scalar> {
@@ -110,32 +118,35 @@ fn survival(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<
 
 fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<Obstacle> {
     let traces = counts.traces.sum;
+    // As a picture shows it.
+    let y_down = setting.models[0].scene().y_down();
     let obstacle = |(&vertex, wound): (&u32, &super::tally::Wound)| {
-        let walls = setting.obstacles.get(vertex).map_or(0, |o| o.walls);
+        let known = setting.obstacles.get(vertex)?;
         let n = traces as f64;
-        let mean = wound.turns as f64 / n;
+        let [left, right] = if y_down { [wound.right, wound.left] } else { [wound.left, wound.right] };
+        let mean = if y_down { -wound.turns } else { wound.turns } as f64 / n;
         let spread = (wound.squares as f64 - n * mean * mean).max(0.0);
         let error = (traces > 1).then(|| (spread / (n - 1.0) / n).sqrt());
-        Obstacle {
+        Some(Obstacle {
             vertex,
-            at: setting.models[0].vertices()[vertex as usize].into(),
-            walls,
-            wound: confidence.share(wound.left + wound.right, traces),
-            left: confidence.share(wound.left, traces),
-            right: confidence.share(wound.right, traces),
+            at: known.middle.into(),
+            walls: known.walls,
+            wound: confidence.share(left + right, traces),
+            left: confidence.share(left, traces),
+            right: confidence.share(right, traces),
             mean: confidence.around(mean, error, traces),
-        }
+        })
     };
-    let mut all: Vec<Obstacle> = counts.wound.iter().map(obstacle).collect();
+    let mut all: Vec<Obstacle> = counts.wound.iter().filter_map(obstacle).collect();
     all.sort_by(|a, b| b.wound.value.total_cmp(&a.wound.value).then(a.vertex.cmp(&b.vertex)));
     all
 }
 
 fn ropes(confidence: &Confidence, setting: &Setting, counts: &Counts, most: usize) -> Vec<CommonRope> {
-    let vertices = setting.models[0].vertices();
+    let (vertices, y_down) = (setting.models[0].vertices(), setting.models[0].scene().y_down());
     let rope = |(key, count, at_most): (&Vec<u32>, u64, u64)| {
         let (anchor, contacts) = key.split_first().expect("a rope has an anchor");
-        let side = |&contact: &u32| if contact % 2 == 1 { Side::Right } else { Side::Left };
+        let side = |&contact: &u32| if contact % 2 == 1 { Side::Right } else { Side::Left }.shown(y_down);
         let at_most = at_most.min(counts.traces.sum);
         // As low as the lower count may be, as high as the higher one.
         let [lower, higher] = [count, at_most].map(|count| confidence.share(count, counts.traces.sum));

@@ -42,7 +42,7 @@ impl SettledTrace {
     pub fn coarsened(self, model: &Model, k: usize) -> SettledTrace {
         assert!(k > 0, "a stride is at least 1");
         assert!(!self.is_thinned(), "a trace is coarsened once");
-        let SettledTrace { id, mut points, added, broken, .. } = self;
+        let SettledTrace { id, mut points, added, broken, walked, .. } = self;
         let mut added = added.into_iter().peekable();
         let mut i = 0;
         points.retain(|_| {
@@ -57,6 +57,7 @@ impl SettledTrace {
         coarse.crossings = settled.violations();
         settled.broken = broken;
         settled.coarse = coarse;
+        settled.walked = walked;
         settled
     }
 }

@@ -21,6 +21,7 @@ use glam::DVec2;
 pub use read::{TraceReader, read_traces};
 pub(crate) use settle::{first_violation, settle_clear};
 pub use settle::{settle, settle_owned};
+pub(crate) use settled::Walked;
 pub use settled::{SettledTrace, Violation, ViolationKind, bounds};
 
 /// One trace: its number and its points, in the scene's frame and unit.

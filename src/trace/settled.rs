@@ -93,6 +93,16 @@ pub struct SettledTrace {
     pub(super) broken: Broken,
     pub(super) bounds: (DVec2, DVec2),
     pub(super) coarse: Coarse,
+    pub(super) walked: Walked,
+}
+
+/// What is known of a trace's steps as it was given or drawn, before any point was left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Walked {
+    /// How many steps left the free end where it was.
+    pub still: usize,
+    /// How many steps of a random walk met a wall or the border of the scene as they were drawn first.
+    pub met: usize,
 }
 
 /// What became of a trace that was coarsened.
@@ -116,7 +126,33 @@ impl SettledTrace {
     pub(super) fn new(id: u64, points: Vec<DVec2>, added: Vec<u32>, broken: Broken) -> Self {
         let first = points[0];
         let bounds = points.iter().fold((first, first), |(low, high), &p| (lower(low, p), higher(high, p)));
-        SettledTrace { id, points, added, hairs: Vec::new(), broken, bounds, coarse: Coarse::default() }
+        SettledTrace {
+            id,
+            points,
+            added,
+            hairs: Vec::new(),
+            broken,
+            bounds,
+            coarse: Coarse::default(),
+            walked: Walked::default(),
+        }
+    }
+
+    /// The same with what is known of its steps.
+    #[must_use]
+    pub(crate) fn with_walked(mut self, walked: Walked) -> Self {
+        self.walked = walked;
+        self
+    }
+
+    /// What was noted of its steps; nothing, if nothing was.
+    pub(crate) fn walked(&self) -> Walked {
+        self.walked
+    }
+
+    /// How many of its steps leave the free end where it is. O(steps).
+    pub fn still(&self) -> usize {
+        self.ends().windows(2).filter(|pair| pair[0] == pair[1]).count()
     }
 
     /// The trace's number.

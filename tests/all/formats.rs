@@ -53,7 +53,7 @@ fn a_plan_drawn_in_inkscape() {
     assert!(among(&plan, |p| p.x >= 20.0 && p.x <= 30.0 && p.y > 19.0 && p.y < 26.0).is_empty());
     let expected = [
         "a unit is 1 mm (the drawing is 120 mm wide, its viewBox 120); y points down, as in the file",
-        "walls lie within 0.01 of the curves that they stand for (--flatten); curves: 3",
+        "walls lie within 0.01 of the curves that they stand for (--flatten), and contacts there depend on it; curves: 3",
         "hidden elements, which are no walls: 1",
         "passed over: 1 text",
     ];
@@ -111,7 +111,7 @@ fn a_plan_in_dxf() {
     assert_eq!(plan.walls().len(), all);
     let notes = [
         "a unit is 1 mm ($INSUNITS 4)",
-        "walls lie within 1 of the curves that they stand for (--flatten); curves: 8",
+        "walls lie within 1 of the curves that they stand for (--flatten), and contacts there depend on it; curves: 8",
         "hidden entities, which are no walls: 1",
         "passed over: 1 TEXT",
     ];

@@ -146,6 +146,8 @@ fn answer(scene: &Scene) -> Summary {
         identity: "8f14e45fceea167a5a36dedd4bea2543".into(),
         traces,
         steps: traces * 1024,
+        still: Some(0.000_25),
+        at_walls: Some(0.0625),
         events: 1_234_567,
         blocks: 40,
         stopped: Stopped::Complete,

@@ -15,7 +15,7 @@ use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured,
 use super::engine::named;
 use super::failure::Failure;
 use super::input::point;
-use super::progress::runs;
+use super::progress::Runs;
 use super::{interrupt, named_scene, print, print_json};
 
 #[derive(Debug, clap::Args)]
@@ -31,8 +31,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     step: Option<f64>,
     /// How many traces there are
-    #[arg(long, value_name = "N", default_value = "2000", value_parser = clap::value_parser!(u32).range(1..))]
-    traces: u32,
+    #[arg(long, alias = "traces", value_name = "N", default_value = "2000", value_parser = clap::value_parser!(u32).range(1..))]
+    count: u32,
     /// How many steps a trace has
     #[arg(long, value_name = "N", default_value = "1000", value_parser = clap::value_parser!(u32).range(1..))]
     steps: u32,
@@ -116,30 +116,32 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// Measures every setting after the other, with a bar on stderr.
+/// Measures every setting after the other, with its progress on stderr.
 fn measure_all(
     settings: &[Setting],
     contenders: &[Contender],
     device: Option<&Device>,
     plan: &Plan,
 ) -> Result<Measured, Failure> {
-    let bar = runs(settings.len() as u64);
+    let mut bar = Runs::new();
     let mut all = Measured::default();
     for (i, setting) in settings.iter().enumerate() {
-        bar.set_message(format!("{}: walking", setting.scene.name()));
+        bar.say(format!("{}: walking", setting.scene.name()));
         let work = setting.work().map_err(failure)?;
         let gear = Gear { device: device.cloned(), window: setting.window };
         let measured = measure(&work, contenders, &gear, plan, &mut |progress| {
-            bar.set_length((settings.len() * progress.total) as u64);
-            bar.set_position((i * progress.total + progress.done) as u64);
-            bar.set_message(progress.contender.name());
+            bar.reach(
+                (i * progress.total + progress.done) as u64,
+                (settings.len() * progress.total) as u64,
+                progress.contender.name(),
+            );
         });
         let measured = measured.map_err(failure)?;
         all.rows.extend(measured.rows);
         let new: Vec<_> = measured.skipped.into_iter().filter(|s| !all.skipped.contains(s)).collect();
         all.skipped.extend(new);
     }
-    bar.finish_and_clear();
+    bar.finish();
     Ok(all)
 }
 
@@ -159,7 +161,7 @@ impl Args {
             step: self.step.unwrap_or_else(|| scene.step()),
             scene,
             steps: self.steps as usize,
-            traces: u64::from(self.traces),
+            traces: u64::from(self.count),
             seed: self.seed,
             window: self.window.map_or(WINDOW, |w| w as usize),
         })

@@ -48,7 +48,8 @@ impl Folder {
         if let Some(rows) = [TRACES, "traces"].iter().map(|name| path.join(name)).find(|rows| rows.exists()) {
             return Err(Failure::input(anyhow!("{} is there already; give another --out", rows.display())));
         }
-        fs::create_dir_all(path).map_err(|e| Failure::input(anyhow!("cannot make {}: {e}", path.display())))?;
+        fs::create_dir_all(path)
+            .map_err(|e| Failure::system(e.kind(), anyhow!("cannot make {}: {e}", path.display())))?;
         Ok(folder)
     }
 

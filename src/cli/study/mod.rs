@@ -10,7 +10,7 @@ mod show;
 use std::path::PathBuf;
 
 use clap::Subcommand;
-use tautline::study::{EXAMPLE, Plan};
+use tautline::study::{EXAMPLE, Plan, Summary};
 
 use super::failure::Failure;
 use super::{examples, print, print_json};
@@ -41,9 +41,25 @@ enum Command {
     /// Write a study's file to start from, with comments
     #[command(after_help = examples::STUDY_INIT)]
     Init(InitArgs),
-    /// Print the JSON Schema of studies' files
+    /// Print the JSON Schema of studies' files, or of their answers
     #[command(after_help = examples::STUDY_SCHEMA)]
-    Schema,
+    Schema(SchemaArgs),
+}
+
+#[derive(Debug, clap::Args)]
+struct SchemaArgs {
+    /// Of what
+    #[arg(long, value_enum, default_value = "study")]
+    of: Described,
+}
+
+/// What there are schemas of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Described {
+    /// The file of a study
+    Study,
+    /// Its answer, summary.json
+    Summary,
 }
 
 #[derive(Debug, clap::Args)]
@@ -61,15 +77,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Command::Show(args) => show::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Init(args) => init(args),
-        Command::Schema => print_json(&Plan::schema()),
+        Command::Schema(args) => print_json(&match args.of {
+            Described::Study => Plan::schema(),
+            Described::Summary => Summary::schema(),
+        }),
     }
 }
 
 fn init(args: &InitArgs) -> Result<(), Failure> {
     let name = args.file.display();
-    let mut file = std::fs::File::create_new(&args.file)
-        .map_err(|e| Failure::input(anyhow::anyhow!("cannot write {name}: {e}")))?;
-    std::io::Write::write_all(&mut file, EXAMPLE.as_bytes())
-        .map_err(|e| Failure::internal(anyhow::anyhow!("cannot write {name}: {e}")))?;
+    let failed = |e: std::io::Error| Failure::system(e.kind(), anyhow::anyhow!("cannot write {name}: {e}"));
+    let mut file = std::fs::File::create_new(&args.file).map_err(failed)?;
+    std::io::Write::write_all(&mut file, EXAMPLE.as_bytes()).map_err(failed)?;
     print(&format!("wrote {name}; run it with: tautline study run {name}\n"))
 }

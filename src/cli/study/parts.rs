@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use tautline::output::{ResultWriter, WriteError, merge_results};
 use tautline::rope::TraceRecord;
+use tautline::scene::Scene;
 use tautline::study::{State, Stopped};
 
 use crate::cli::failure::Failure;
@@ -58,14 +59,14 @@ impl Parts {
         Ok(Some(Parts { whole, folder, notes, current: None }))
     }
 
-    /// Adds rows; `first` is the number of the block with which they begin, among those of the shard.
-    pub(super) fn write(&mut self, first: u64, records: &[TraceRecord]) -> Result<(), WriteError> {
+    /// Adds rows of ropes in `scene`; `first` is the number of the block with which they begin, among those of the shard.
+    pub(super) fn write(&mut self, first: u64, scene: &Scene, records: &[TraceRecord]) -> Result<(), WriteError> {
         if self.current.is_none() {
             let mut writer = ResultWriter::create(&self.folder.join(format!("{first:010}.parquet")))?;
             self.notes.iter().for_each(|(key, value)| writer.note(key, value));
             self.current = Some(writer);
         }
-        self.current.as_mut().map_or(Ok(()), |writer| writer.write_all(records))
+        self.current.as_mut().map_or(Ok(()), |writer| writer.write_all(scene, records))
     }
 
     /// Puts the rows since the last time in their place.

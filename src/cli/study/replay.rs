@@ -3,14 +3,16 @@
 use std::path::PathBuf;
 
 use anyhow::anyhow;
+use glam::DVec2;
 use tautline::engine::{Engine, FastGpu, Job, Precision, Reference};
+use tautline::geometry::number as shortest;
 use tautline::gpu::{AdapterChoice, Device};
 use tautline::output::{check_output, write_events};
 use tautline::picture::Drawing;
 
 use super::folder::{BaseArgs, Folder};
 use crate::cli::failure::Failure;
-use crate::cli::look::{Look, Target, write};
+use crate::cli::look::{Look, Target, write, write_whole};
 use crate::cli::print;
 use crate::cli::summary::{counted, short};
 
@@ -26,6 +28,9 @@ pub(crate) struct Args {
     /// Where to write its wraps and unwraps: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
+    /// Where to write the points of the walk, as it was drawn or given: .csv, as `tautline eval --traces` takes them
+    #[arg(long, value_name = "FILE", value_parser = csv)]
+    points: Option<PathBuf>,
     /// Where to draw it: .svg, .png, or .html for a page that plays it
     #[arg(id = "picture", long = "draw", value_name = "FILE")]
     draw: Option<PathBuf>,
@@ -33,17 +38,30 @@ pub(crate) struct Args {
     look: Look,
 }
 
+/// The name of a .csv.
+fn csv(name: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(name);
+    let is_csv = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+    if is_csv { Ok(path) } else { Err("points are written as .csv".to_owned()) }
+}
+
+/// The points of the trace with that number as rows.
+fn rows(number: u64, points: &[DVec2]) -> String {
+    let rows = points.iter().map(|p| format!("{number},{},{}\n", shortest(p.x), shortest(p.y)));
+    std::iter::once("trace,x,y\n".to_owned()).chain(rows).collect()
+}
+
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let (_, study, _) = Folder::open(&args.folder, &args.base)?;
     let plan = study.plan();
-    if !plan.is_given() && args.trace >= plan.run.traces {
-        let last = plan.run.traces - 1;
+    if !plan.is_given() && args.trace >= plan.run.count() {
+        let last = plan.run.count() - 1;
         return Err(Failure::input(anyhow!(
             "--trace: the study's traces are 0 to {last}, so there is no {}",
             args.trace
         )));
     }
-    for (option, path) in [("--events", &args.events), ("--draw", &args.draw)] {
+    for (option, path) in [("--events", &args.events), ("--points", &args.points), ("--draw", &args.draw)] {
         let own = |path: &std::path::Path| {
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
             path.exists() && folder.unwrap_or(".".as_ref()).canonicalize().ok() == args.folder.canonicalize().ok()
@@ -56,7 +74,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
-    args.events.as_deref().map(check_output).transpose()?;
+    [&args.events, &args.points].into_iter().flatten().try_for_each(|path| check_output(path))?;
     let target = args.draw.as_deref().map(|path| Target::new(path, &args.look)).transpose()?;
     let mut engine: Box<dyn Engine> = match plan.run.precision {
         Precision::Certified => Box::new(Reference::new(model)),
@@ -68,10 +86,13 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         write(target, &Drawing::new(model).with(&trace, &record), &args.look)?;
     }
     if let Some(path) = &args.events {
-        write_events(path, model.vertices(), std::slice::from_ref(&record))?;
+        write_events(path, model.scene(), std::slice::from_ref(&record))?;
+    }
+    if let Some(path) = &args.points {
+        write_whole(path, rows(args.trace, &study.whole_trace(args.trace)?.ends()).as_bytes())?;
     }
     print(&format!(
-        "trace {}: {} steps, {} events, length {} at the end, {} at the most, {} contacts\n",
+        "trace {}: {} steps, {} events, rope length {} at the end, greatest {}, depth {} at the end\n",
         args.trace,
         record.steps,
         record.events.len(),

@@ -14,7 +14,7 @@ use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, Spent, State, S
 use super::folder::{BaseArgs, Folder, RUN_REPORT};
 use super::parts::Parts;
 use super::show;
-use crate::cli::engine::EngineArgs;
+use crate::cli::engine::{EngineArgs, of_studies};
 use crate::cli::failure::Failure;
 use crate::cli::input::note;
 use crate::cli::interrupt::{self, Writing};
@@ -27,6 +27,7 @@ use crate::cli::{print, print_json};
 const CHECKPOINT: Duration = Duration::from_secs(10);
 
 #[derive(Debug, clap::Args)]
+#[command(mut_arg("engine", of_studies))]
 pub(crate) struct RunArgs {
     /// The study's file (TOML); without one, the built-in example
     file: Option<PathBuf>,
@@ -34,8 +35,8 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// How many traces, instead of what the file says
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    traces: Option<u64>,
+    #[arg(long, alias = "traces", value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    count: Option<u64>,
     /// The seed, instead of the file's
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
@@ -55,6 +56,7 @@ pub(crate) struct RunArgs {
 }
 
 #[derive(Debug, clap::Args)]
+#[command(mut_arg("engine", of_studies))]
 pub(crate) struct ResumeArgs {
     /// The study's folder
     folder: PathBuf,
@@ -81,7 +83,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         None => (Plan::parse(EXAMPLE)?, PathBuf::new()),
     };
     let base = if base.as_os_str().is_empty() { PathBuf::from(".") } else { base };
-    plan.run.traces = args.traces.unwrap_or(plan.run.traces);
+    plan.run.traces = args.count.or(plan.run.traces);
     plan.run.seed = args.seed.unwrap_or(plan.run.seed);
     plan.run.precision = args.engine.precision().unwrap_or(plan.run.precision);
     plan.run.stride = args.trade.stride.unwrap_or(plan.run.stride);
@@ -97,9 +99,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         None => e,
     };
     let study = Study::open(plan, &base).map_err(located)?;
-    if is_stuck(&study)? {
-        say!("note: the first traces stay where they start: is no step of the walk possible in this scene?");
-    }
+    study.check_moves().map_err(located)?;
     if let Some(file) = &study.plan().scene.file {
         note(file, study.models()[0].scene());
     }
@@ -164,7 +164,7 @@ fn proceed(
     let outcome = with_progress(&progress, &job, || {
         go(study, &mut engines, &mut state, &job, |state, records, added| {
             if let Some(parts) = &mut parts {
-                parts.write(written, &records[..added])?;
+                parts.write(written, study.models()[0].scene(), &records[..added])?;
                 written = state.done();
             }
             if saved.elapsed() >= CHECKPOINT {
@@ -321,17 +321,6 @@ fn draw(folder: &Folder, summary: &Summary, study: &Study, run: &serde_json::Val
     folder.write("report.html", picture::page(summary, &shown, Some(run)).as_bytes())
 }
 
-/// Whether nothing moves in the first traces drawn, as where steps are far longer than the scene.
-fn is_stuck(study: &Study) -> Result<bool, Failure> {
-    let few = if study.plan().is_given() { 0 } else { study.plan().run.traces.min(5) };
-    for number in 0..few {
-        if study.trace(number)?.ends().windows(2).any(|p| p[0] != p[1]) {
-            return Ok(false);
-        }
-    }
-    Ok(few > 0)
-}
-
 /// Does the first blocks, to say what all of them would cost.
 fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     let plan = study.plan();
@@ -351,15 +340,18 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     }
     let mut text = format!(
         "the study is sound: {} traces in {} blocks, {} walls, anchors: {}, engine {name} ({precision}) on {on}\n",
-        plan.run.traces,
+        plan.run.count(),
         plan.blocks(),
         study.models()[0].scene().walls().len(),
         study.models().len(),
     );
     if let Some((traces, took)) = first.filter(|&(traces, _)| traces > 0) {
-        let share = plan.run.traces as f64 / f64::from(args.shard.of()) / traces as f64;
+        let share = plan.run.count() as f64 / f64::from(args.shard.of()) / traces as f64;
         let all = Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX);
         text += &format!("about {}, going by the first {traces} of the traces\n", show::duration(all));
+        if let Some(steps) = show::standing(&state.summary(study)) {
+            text += &format!("{steps} in these\n");
+        }
     }
     print(&text)
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use tautline::study::{Estimate, Stopped, Summary};
+use tautline::study::{AtWalls, Estimate, Stopped, Summary, quantity};
 
 use super::folder::{BaseArgs, Folder};
 use crate::cli::failure::Failure;
@@ -47,6 +47,9 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     };
     let [traces, steps, events] = [summary.traces, summary.steps, summary.events].map(grouped);
     line(format_args!("{traces} traces, {steps} steps, {events} events; {why}"));
+    if let Some(words) = standing(summary) {
+        line(format_args!("{words}"));
+    }
     if let Some(seconds) = run.and_then(|run| run["seconds"].as_f64()) {
         // Those of earlier runs took other seconds.
         let rate = run.and_then(|run| run["traces"].as_f64()).unwrap_or(0.0) / seconds;
@@ -68,7 +71,7 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     }
     let confidence = 100.0 * summary.study.tallies.confidence;
     line(format_args!(
-        "\n{:12}{:>12}  {:>24}{:>10}{:>10}{:>10}",
+        "\n{:24}{:>10}  {:>24}{:>10}{:>10}{:>10}",
         "a trace",
         "mean",
         format!("{confidence} % interval"),
@@ -79,9 +82,9 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     for scalar in &summary.scalars {
         let quantile =
             |share| scalar.quantiles.iter().find(|q| q.share == share).map_or(String::new(), |q| short(q.value.value));
-        let name = scalar.name.replace('_', " ");
+        let name = quantity(&scalar.name);
         line(format_args!(
-            "{name:12}{:>12}  {:>24}{:>10}{:>10}{:>10}",
+            "{name:24}{:>10}  {:>24}{:>10}{:>10}{:>10}",
             short(scalar.mean.value),
             interval(&scalar.mean),
             quantile(0.5),
@@ -103,7 +106,9 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
         }
     }
     if !summary.obstacles.is_empty() {
-        line(format_args!("\nropes wound all the way about an obstacle at the end (its first wall end)"));
+        line(format_args!(
+            "\nropes wound all the way round an obstacle at the end (the point about which that is counted)"
+        ));
     }
     for obstacle in summary.obstacles.iter().take(5) {
         let at = format!("({}, {})", short(obstacle.at[0]), short(obstacle.at[1]));
@@ -115,12 +120,24 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     for rope in summary.ropes.iter().take(5) {
         let turns = match rope.wraps.len() {
             0 => "straight".to_owned(),
-            1 => "1 contact".to_owned(),
-            n => format!("{n} contacts"),
+            1 => "1 turn".to_owned(),
+            n => format!("{n} turns"),
         };
         line(format_args!("  {turns:24}  {:>7}  {}", percent(rope.share.value), shares(&rope.share)));
     }
     text
+}
+
+/// Which share of the steps stood still, and which met a wall; `None` if there are no steps.
+pub(super) fn standing(summary: &Summary) -> Option<String> {
+    let still = percent(summary.still?);
+    let met = match (summary.at_walls, summary.study.walk.at_walls()) {
+        (Some(share), Some(AtWalls::Redraw)) => format!(", {} were drawn again at walls", percent(share)),
+        (Some(share), Some(AtWalls::Reject)) => format!(", {} were not taken at walls", percent(share)),
+        (Some(share), Some(AtWalls::Reflect)) => format!(", {} were thrown back at walls", percent(share)),
+        _ => String::new(),
+    };
+    Some(format!("{still} of the steps stood still{met}"))
 }
 
 fn interval(estimate: &Estimate) -> String {

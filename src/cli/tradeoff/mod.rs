@@ -22,12 +22,15 @@ use super::bench::{length, open_device};
 use super::failure::Failure;
 use super::input::{above_zero, point};
 use super::look::write_whole;
-use super::progress::runs;
+use super::progress::Runs;
 use super::trade::stride;
 use super::{interrupt, named_scene, print, print_json};
 
 /// The seed of built-in walks and scenes unless told otherwise.
 const SEED: u64 = 1;
+
+/// How many random walks there are unless told otherwise.
+const COUNT: u32 = 10_000;
 
 /// Of how many points one is used, unless told otherwise.
 const STRIDES: [u32; 4] = [2, 4, 8, 16];
@@ -46,9 +49,12 @@ pub(crate) struct Args {
     /// Where the rope is tied in a scene file; overrides what the file says
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     anchor: Option<DVec2>,
-    /// How many random walks, or a file of traces: .csv or .parquet
-    #[arg(long, value_name = "N|FILE", default_value = "10000")]
-    traces: String,
+    /// The traces: .csv or .parquet [default: random walks]
+    #[arg(long, value_name = "FILE")]
+    traces: Option<PathBuf>,
+    /// How many random walks there are without traces [default: 10000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    count: Option<u32>,
     /// How many steps a random walk has [default: 500]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     steps: Option<u32>,
@@ -144,25 +150,35 @@ impl Args {
 
     fn work(&self, scene: &BenchScene) -> Result<Work, Failure> {
         let model = scene.model(self.seed())?;
-        let traces = match self.traces.parse::<u32>() {
-            Ok(0) => return Err(Failure::input(anyhow!("--traces 0: give at least one trace"))),
-            Ok(count) => {
+        let traces = match &self.traces {
+            None => {
                 let (step, steps) = (self.step.unwrap_or_else(|| scene.step()), self.steps.unwrap_or(500) as usize);
-                walks(&model, Walker { step, steps, seed: self.seed() }, count.into())
+                walks(&model, Walker { step, steps, seed: self.seed() }, self.count.unwrap_or(COUNT).into())
             }
-            Err(_) => self.given()?,
+            Some(path) => self.given(path)?,
         };
         Ok(Work { scene: scene.name(), model, traces })
     }
 
     /// The traces of a file.
-    fn given(&self) -> Result<Vec<Trace>, Failure> {
-        let walked = [self.steps.map(|_| "--steps"), self.step.map(|_| "--step"), self.seed.map(|_| "--seed")];
+    fn given(&self, path: &Path) -> Result<Vec<Trace>, Failure> {
+        let walked = [
+            self.count.map(|_| "--count"),
+            self.steps.map(|_| "--steps"),
+            self.step.map(|_| "--step"),
+            self.seed.map(|_| "--seed"),
+        ];
         if let Some(option) = walked.into_iter().flatten().next() {
             let what = "says how random walks are walked; the traces of a file are taken as they are";
             return Err(Failure::input(anyhow!("{option} {what}")));
         }
-        let path = Path::new(&self.traces);
+        if !path.exists()
+            && let Ok(count) = path.to_string_lossy().parse::<u64>()
+        {
+            return Err(Failure::input(anyhow!(
+                "--traces {count}: give a file of traces; how many random walks there are says --count {count}"
+            )));
+        }
         let traces = read_traces(path)?;
         let shown = path.display();
         if traces.is_empty() {
@@ -174,21 +190,24 @@ impl Args {
         Ok(traces)
     }
 
-    /// Measures, with a bar on stderr.
+    /// Measures, with its progress on stderr.
     fn measure(&self, work: &Work, wanted: &Wanted, device: Option<Device>) -> Result<Tradeoff, Failure> {
         let gear = Gear { device, window: WINDOW };
         let plan = Plan { repeats: self.repeats as usize, run: Duration::from_secs_f64(self.seconds) };
-        let bar = runs(1);
+        let mut bar = Runs::new();
+        bar.say("checking traces, simplifying walls".to_owned());
         let measured = tradeoff(work, wanted, &gear, &plan, &mut |progress| {
-            bar.set_length(progress.total as u64);
-            bar.set_position(progress.done as u64);
             let next = progress.next.map(|(method, setting)| format!("{}, {setting}", method.name));
-            bar.set_message(next.unwrap_or_else(|| "checking traces, simplifying walls".to_owned()));
+            let next = next.unwrap_or_else(|| "checking traces, simplifying walls".to_owned());
+            bar.reach(progress.done as u64, progress.total as u64, next);
         });
-        bar.finish_and_clear();
+        bar.finish();
         measured.map_err(|error| match error {
             TradeoffError::Engine(error) => error.into(),
-            TradeoffError::Violation(violation) => Failure::input(anyhow!("{}: {violation}", self.traces)),
+            TradeoffError::Violation(violation) => {
+                let file = self.traces.iter().map(|path| format!("{}: ", path.display())).collect::<String>();
+                Failure::input(anyhow!("{file}{violation}"))
+            }
             TradeoffError::Disagreement(_) => Failure::internal(error.into()),
         })
     }

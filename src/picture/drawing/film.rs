@@ -42,11 +42,11 @@ impl Drawing<'_> {
         let events_too = dragged.record.events.len() <= most;
         let last = dragged.points.len() - 1;
         let mut film = Film::default();
-        let mirrored = self.scene.y_down();
+        let y_down = self.scene.y_down();
         // The rope lies in the anchor before it is dragged to the first point.
         let anchor = self.anchor.unwrap_or_default();
         if dragged.points[0] != anchor {
-            film.take(-1.0, &Moment::start(anchor), mirrored);
+            film.take(-1.0, &Moment::start(anchor), y_down);
         }
         self.moments(dragged, &dragged.points, |m| {
             let wanted = match m.event {
@@ -54,7 +54,7 @@ impl Drawing<'_> {
                 None => m.step % every == 0 || m.step == last,
             };
             if wanted {
-                film.take(m.step as f64 - 1.0 + m.share, m, mirrored);
+                film.take(m.step as f64 - 1.0 + m.share, m, y_down);
             }
         });
         film
@@ -62,14 +62,14 @@ impl Drawing<'_> {
 }
 
 impl Film {
-    fn take(&mut self, time: f64, moment: &Moment, mirrored: bool) {
+    fn take(&mut self, time: f64, moment: &Moment, y_down: bool) {
         let turns = moment.turns();
         let mut rest = turns.as_slice();
         let mut corners = Vec::new();
         for c in moment.rope.contacts() {
             let turns = rest.first() == Some(c);
             rest = &rest[usize::from(turns)..];
-            corners.push(Corner { vertex: c.vertex, at: c.at, left: (c.side == Side::Left) != mirrored, turns });
+            corners.push(Corner { vertex: c.vertex, at: c.at, left: c.side.shown(y_down) == Side::Left, turns });
         }
         if self.ropes.last() != Some(&corners) {
             self.ropes.push(corners);

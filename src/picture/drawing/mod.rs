@@ -62,7 +62,8 @@ const RAYS: usize = 12;
 /// let first = drawing.clone().at_step(0).svg()?;  // after the first
 /// let events = drawing.frames(None)?;             // a small picture for each wrap and unwrap
 /// let page = drawing.page()?;                     // plays it in a browser
-/// std::fs::write(std::env::temp_dir().join("rope.png"), png(&last, 1440)?)?;
+/// let folder = tempfile::tempdir()?;
+/// std::fs::write(folder.path().join("rope.png"), png(&last, 1440)?)?;
 /// # assert!(first != last && events.contains("wrap") && page.contains("<script"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -82,7 +82,7 @@ impl Canvas<'_> {
         // A wall end that is touched several times on one side is marked once.
         let mut marked = HashMap::new();
         for contact in &shape.turns {
-            let left = (contact.side == Side::Left) != self.frame.mirrored();
+            let left = contact.side.shown(self.frame.mirrored()) == Side::Left;
             let at = self.at(contact.at);
             if self.shows(at) && marked.insert((contact.vertex, left), ()).is_none() {
                 self.key.add(if left { Entry::TurnLeft } else { Entry::TurnRight });
@@ -114,7 +114,7 @@ impl Canvas<'_> {
                 continue;
             }
             let text = numbers(turns);
-            let left = (shape.turns[first].side == Side::Left) != self.frame.mirrored();
+            let left = shape.turns[first].side.shown(self.frame.mirrored()) == Side::Left;
             let away = beside(line[first], line[first + 1], line.get(first + 2).copied(), left);
             let Some(place) = self.room(line[first + 1], away, width(&text, LETTERS), &taken) else { continue };
             let middle = [(place.low[0] + place.high[0]) / 2.0, place.high[1] - 1.5];

@@ -53,8 +53,8 @@ impl Agreement {
         }
         for (i, record) in records.iter().enumerate() {
             agree(&mut self.ropes[i], by, record, rope(record), |ours, theirs| match (ours.len(), theirs.len()) {
-                (ours, theirs) if ours == theirs => format!("its {ours} contacts at the end are different ones"),
-                (ours, theirs) => format!("{ours} and {theirs} contacts at the end"),
+                (ours, theirs) if ours == theirs => format!("its {ours} turns at the end are different ones"),
+                (ours, theirs) => format!("depths {ours} and {theirs} at the end"),
             })?;
             if by.promise == Promise::Events {
                 agree(&mut self.events[i], by, record, events(record), |ours, theirs| match (ours.0, theirs.0) {
@@ -148,7 +148,7 @@ mod tests {
         wrong[3].wraps[0].0.x += 1e-9;
         assert_eq!(agreement.check(contender("note"), &wrong), Ok(Some(1)));
         let error = agreement.check(contender("gpu"), &wrong).unwrap_err();
-        assert_eq!(error.what, format!("its {depth} contacts at the end are different ones"));
+        assert_eq!(error.what, format!("its {depth} turns at the end are different ones"));
         assert!(error.to_string().starts_with("funnel (every step) and gpu (windows) disagree on trace 3: its "));
     }
 }

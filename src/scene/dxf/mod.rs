@@ -3,6 +3,7 @@
 //! The file is read here: it is pairs of lines, and what is wrong in it, or no wall, is to be named with its line.
 
 mod entity;
+mod insert;
 mod shapes;
 mod spline;
 
@@ -11,15 +12,13 @@ use std::rc::Rc;
 
 use glam::{DAffine2, DVec2};
 
-use super::curves::{Outlines, direction};
-use super::{Scene, listed};
+use super::curves::Outlines;
+use super::{Inside, Object, Scene, excerpt, listed, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
 use entity::{Entities, Entity};
-use shapes::{Corner, point, polyline, upside};
-
-/// How deep blocks may lie in each other.
-const DEPTH_MAX: usize = 64;
+use insert::{Block, Clips};
+use shapes::{Corner, point, polyline, upside, width};
 
 /// How many entities and lines there may be beyond those that the file itself has room for: by INSERT.
 const USED_MAX: usize = 1 << 22;
@@ -29,8 +28,8 @@ const ANCHOR: &str = "anchor";
 
 /// Reads a drawing in ASCII DXF. Its coordinates are x and y of the model space; z is passed over.
 ///
-/// What lies on a layer that is off or frozen, what is invisible and what lies in the paper space is no wall. Entities of
-/// other kinds are counted.
+/// What lies on a layer that is off or frozen, what is invisible and what lies in the paper space is no wall; nor is what is
+/// inserted on a frozen layer, whatever layer it is on itself. Entities of other kinds are counted.
 pub(super) fn parse(bytes: &[u8], flatten: Option<f64>) -> Result<Scene, Fault> {
     if bytes.starts_with(b"AutoCAD Binary DXF") {
         return Err(Fault::new(Place::default(), "binary DXF is not read; save the drawing as ASCII DXF"));
@@ -49,17 +48,12 @@ pub(super) fn parse(bytes: &[u8], flatten: Option<f64>) -> Result<Scene, Fault> 
             ("ENDSEC", _) => section = "",
             ("LAYER", "TABLES") => reader.layer(&entity)?,
             ("BLOCK", "BLOCKS") => reader.block(&entity, &mut entities)?,
+            (_, "OBJECTS") => reader.clips.object(&entity)?,
             (_, "ENTITIES") => reader.entity(&entity, &Context::default())?,
             _ => {}
         }
     }
     reader.scene(flatten)
-}
-
-/// A part of a drawing that is inserted by its name.
-struct Block<'a> {
-    base: DVec2,
-    entities: Vec<Entity<'a>>,
 }
 
 /// What an entity gets from the block in which it lies.
@@ -68,12 +62,14 @@ struct Context<'a> {
     transform: DAffine2,
     /// The layer of what lies on layer 0 of the block.
     layer: &'a str,
+    /// The block's name, if people gave it.
+    label: Option<&'a str>,
     depth: usize,
 }
 
 impl Default for Context<'_> {
     fn default() -> Self {
-        Context { transform: DAffine2::IDENTITY, layer: "0", depth: 0 }
+        Context { transform: DAffine2::IDENTITY, layer: "0", label: None, depth: 0 }
     }
 }
 
@@ -83,12 +79,23 @@ struct Reader<'a> {
     unit: Option<String>,
     /// By their names in capitals.
     blocks: HashMap<String, Rc<Block<'a>>>,
-    hidden_layers: HashSet<String>,
+    /// Layers by their names in capitals.
+    off: HashSet<String>,
+    frozen: HashSet<String>,
     outlines: Outlines,
     /// Where the anchor is, and in which line.
     anchor: Option<(DVec2, u64)>,
     passed: BTreeMap<&'a str, usize>,
     hidden: usize,
+    /// Entities without length.
+    dropped: usize,
+    /// How many polylines have a width, and the greatest one.
+    wide: (usize, f64),
+    clips: Clips<'a>,
+    /// The files of blocks that lie in others, and how often these are inserted.
+    elsewhere: BTreeMap<String, usize>,
+    /// What nearly marks the anchor.
+    nearly: Option<String>,
     visited: usize,
     /// How many entities and lines there may be.
     most: usize,
@@ -107,29 +114,24 @@ impl<'a> Reader<'a> {
     }
 
     fn layer(&mut self, layer: &Entity<'a>) -> Result<(), Fault> {
-        if layer.flags(70)? & 1 == 1 || layer.flags(62)? < 0 {
-            self.hidden_layers.insert(layer.text(2).unwrap_or_default().to_uppercase());
+        let name = || layer.text(2).unwrap_or_default().to_uppercase();
+        if layer.flags(70)? & 1 == 1 {
+            self.frozen.insert(name());
         }
-        Ok(())
-    }
-
-    fn block(&mut self, head: &Entity<'a>, entities: &mut Entities<'a>) -> Result<(), Fault> {
-        let mut block = Block { base: DVec2::new(head.or(10, 0.0)?, head.or(20, 0.0)?), entities: Vec::new() };
-        while let Some(entity) = entities.next()? {
-            match entity.kind {
-                "ENDBLK" => break,
-                "ENDSEC" | "BLOCK" => return Err(head.fault("has no ENDBLK")),
-                _ => block.entities.push(entity),
-            }
+        if layer.flags(62)? < 0 {
+            self.off.insert(name());
         }
-        self.blocks.insert(head.text(2).unwrap_or_default().to_uppercase(), Rc::new(block));
         Ok(())
     }
 
     fn scene(self, flatten: Option<f64>) -> Result<Scene, Fault> {
-        let flat = self.outlines.flatten(flatten).map_err(|what| Fault::new(Place::default(), what))?;
+        let mut flat = self.outlines.flatten(flatten).map_err(|what| Fault::new(Place::default(), what))?;
+        if let Some((anchor, _)) = self.anchor {
+            flat.free_round(anchor);
+        }
         let note = flat.note();
         let mut scene = Scene::of(flat.objects, flat.walls)?;
+        scene.dropped += self.dropped;
         if let Some((anchor, _)) = self.anchor {
             scene = scene.with_anchor(anchor);
         }
@@ -137,6 +139,25 @@ impl<'a> Reader<'a> {
         note.into_iter().for_each(|note| scene.note(note));
         if self.hidden > 0 {
             scene.note(format!("hidden entities, which are no walls: {}", self.hidden));
+        }
+        let clipped = self.clips.count();
+        if clipped > 0 {
+            scene.note(format!("clips of inserted blocks (XCLIP) cut no walls; inserts taken whole: {clipped}"));
+        }
+        if !self.elsewhere.is_empty() {
+            let files = self.elsewhere.iter().map(|(file, count)| (file.as_str(), *count)).collect();
+            scene.note(format!(
+                "what lies in other files is missing; inserts of external references: {}",
+                listed(&files)
+            ));
+        }
+        if let (1.., widest) = self.wide {
+            let widest: f64 = format!("{widest:.2e}").parse().unwrap_or(widest);
+            let what = format!("walls are the middle of polylines, whose widest is {widest} wide");
+            scene.note(format!("{what}; polylines with a width: {}", self.wide.0));
+        }
+        if let Some(nearly) = self.nearly.filter(|_| self.anchor.is_none()) {
+            scene.note(format!("{nearly}; what marks the anchor is a POINT on the layer \"anchor\""));
         }
         if !self.passed.is_empty() {
             scene.note(format!("passed over: {}", listed(&self.passed)));
@@ -157,23 +178,39 @@ impl<'a> Reader<'a> {
         self.count(entity)?;
         let own = entity.text(8).unwrap_or("0");
         let layer = if own == "0" { outer.layer } else { own };
-        let hidden = self.hidden_layers.contains(&layer.to_uppercase());
+        let name = layer.to_uppercase();
+        // A layer that is off hides what lies on it, a frozen one also what is inserted there and lies on others.
+        let hidden = self.frozen.contains(&name) || (self.off.contains(&name) && entity.kind != "INSERT");
         if hidden || entity.flags(60)? == 1 || entity.flags(67)? == 1 {
             self.hidden += 1;
             return Ok(());
         }
+        let anchors = layer.eq_ignore_ascii_case(ANCHOR);
+        if !anchors && self.nearly.is_none() && nearly_anchor(layer) {
+            let (kind, line) = (entity.kind, entity.line);
+            self.nearly = Some(format!("{kind} in line {line} lies on the layer {:?}", excerpt(layer)));
+        }
         let context = Context { layer, ..*outer };
         match entity.kind {
-            "POINT" if layer.eq_ignore_ascii_case(ANCHOR) => return self.mark(entity, &context),
+            "POINT" if anchors => return self.mark(entity, &context),
             "POINT" => return Ok(()),
             "INSERT" => return self.insert(entity, &context),
             _ => {}
         }
         // These have coordinates of their own, seen along their normal.
         let mut transform = context.transform;
-        if matches!(entity.kind, "ARC" | "CIRCLE" | "LWPOLYLINE" | "POLYLINE") && upside(entity)? < 0.0 {
+        if matches!(entity.kind, "ARC" | "CIRCLE" | "LWPOLYLINE" | "POLYLINE" | "SOLID" | "TRACE")
+            && upside(entity)? < 0.0
+        {
             transform *= MIRRORED;
         }
+        // Names take room too where something is inserted again and again.
+        self.visited += (layer.len() + context.label.map_or(0, str::len)) / 16;
+        // The format does not say whether a closed line is the border of something solid; these are painted areas.
+        let inside = if matches!(entity.kind, "SOLID" | "TRACE") { Inside::EvenOdd } else { Inside::Free };
+        let label = context.label.map(short);
+        self.outlines.begin(Object { label, layers: vec![short(layer)], inside });
+        let from = self.outlines.len();
         let pen = &mut self.outlines.pen(transform);
         let drawn = if entity.kind == "POLYLINE" {
             let (corners, closed) = corners(entity)?;
@@ -182,9 +219,20 @@ impl<'a> Reader<'a> {
             shapes::draw(entity, pen)
         };
         if !drawn? {
+            self.outlines.take_back();
             *self.passed.entry(entity.kind).or_default() += 1;
-        } else if layer.eq_ignore_ascii_case(ANCHOR) {
+            return Ok(());
+        }
+        if anchors {
             return Err(entity.fault(format_args!("lies on the layer {layer}, which is for one POINT, the anchor")));
+        }
+        if self.outlines.since(from).lines == 0 {
+            let unseen = entity.kind == "3DFACE" && entity.flags(70)? & 15 == 15;
+            *if unseen { &mut self.hidden } else { &mut self.dropped } += 1;
+        }
+        let width = width(entity)? * transform.matrix2.determinant().abs().sqrt();
+        if width > 0.0 {
+            self.wide = (self.wide.0 + 1, self.wide.1.max(width));
         }
         Ok(())
     }
@@ -198,37 +246,6 @@ impl<'a> Reader<'a> {
             return Err(entity.fault(what));
         }
         self.anchor = Some((at, entity.line));
-        Ok(())
-    }
-
-    /// Draws a block once, or in columns and rows.
-    fn insert(&mut self, insert: &Entity<'a>, context: &Context<'_>) -> Result<(), Fault> {
-        let name = insert.text(2).unwrap_or_default();
-        let Some(block) = self.blocks.get(&name.to_uppercase()).cloned() else {
-            return Err(insert.fault(format_args!("the drawing has no block {name:?}")));
-        };
-        if context.depth >= DEPTH_MAX {
-            return Err(insert.fault(format_args!("blocks lie in each other more than {DEPTH_MAX} deep")));
-        }
-        let way = direction(insert.or(50, 0.0)?);
-        let turn = DAffine2::from_cols(way, way.perp(), DVec2::ZERO);
-        let scale = DVec2::new(insert.or(41, 1.0)?, insert.or(42, 1.0)?);
-        let spacing = DVec2::new(insert.or(44, 0.0)?, insert.or(45, 0.0)?);
-        let mut outer = context.transform;
-        if upside(insert)? < 0.0 {
-            outer *= MIRRORED;
-        }
-        outer *= DAffine2::from_translation(point(insert, 10)?) * turn;
-        for row in 0..insert.flags(71)?.max(1) {
-            for column in 0..insert.flags(70)?.max(1) {
-                self.count(insert)?;
-                let by = spacing * DVec2::new(column as f64, row as f64);
-                let place = DAffine2::from_translation(by) * DAffine2::from_scale(scale);
-                let transform = outer * place * DAffine2::from_translation(-block.base);
-                let inner = Context { transform, depth: context.depth + 1, ..*context };
-                block.entities.iter().try_for_each(|entity| self.entity(entity, &inner))?;
-            }
-        }
         Ok(())
     }
 }
@@ -250,6 +267,11 @@ fn corners(entity: &Entity<'_>) -> Result<(Vec<Corner>, bool), Fault> {
         }
     }
     Ok((corners, flags & 1 == 1))
+}
+
+/// The start of a name, as it is kept.
+fn short(name: &str) -> String {
+    name.chars().take(200).collect()
 }
 
 fn unit_name(code: &str) -> Option<&'static str> {

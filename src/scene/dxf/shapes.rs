@@ -11,7 +11,7 @@ use crate::read_error::Fault;
 /// A bulge below this is none: the arc lies nearer to its chord than this part of the chord's length.
 const BULGE_MIN: f64 = 1e-9;
 
-/// Draws an entity that stands alone, and says whether it is of a kind that is drawn.
+/// Draws an entity that stands alone, and says whether it is of a kind that is drawn. Of what has no extent it draws nothing.
 pub(super) fn draw(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<bool, Fault> {
     let drawn = match entity.kind {
         "LINE" => {
@@ -19,18 +19,21 @@ pub(super) fn draw(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<bool, Fault
             pen.polyline(&[from, to], false)
         }
         "CIRCLE" => {
-            let radius = radius(entity)?;
+            let Some(radius) = radius(entity)? else { return Ok(true) };
             pen.ellipse(point(entity, 10)?, DVec2::new(radius, 0.0), DVec2::new(0.0, radius))
         }
         "ARC" => {
-            let radius = radius(entity)?;
             let [from, to] = [entity.number(50)?, entity.number(51)?];
+            let Some(radius) = radius(entity)? else { return Ok(true) };
             let [a, b] = [DVec2::new(radius, 0.0), DVec2::new(0.0, radius)];
             arc(pen, Ellipse { centre: point(entity, 10)?, a, b, from, sweep: turn(from, to) })
         }
         "ELLIPSE" => {
             let a = point(entity, 11)?;
             let b = a.perp() * entity.number(40)? * upside(entity)?;
+            if b == DVec2::ZERO {
+                return Ok(true);
+            }
             let [from, to] = [entity.or(41, 0.0)?, entity.or(42, std::f64::consts::TAU)?].map(f64::to_degrees);
             arc(pen, Ellipse { centre: point(entity, 10)?, a, b, from, sweep: turn(from, to) })
         }
@@ -38,6 +41,12 @@ pub(super) fn draw(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<bool, Fault
             let corners = corners(entity)?;
             return polyline(entity, &corners, entity.flags(70)? & 1 == 1, pen).map(|()| true);
         }
+        "SOLID" | "TRACE" => {
+            // Its corners are told along two opposite sides, both in the same direction.
+            let [a, b, c, d] = corners_of_face(entity)?;
+            pen.polyline(&if c == d { vec![a, b, c] } else { vec![a, b, d, c] }, true)
+        }
+        "3DFACE" => face(entity, pen)?,
         "SPLINE" => return spline(entity, pen).map(|()| true),
         _ => return Ok(false),
     };
@@ -65,11 +74,50 @@ pub(super) fn upside(entity: &Entity<'_>) -> Result<f64, Fault> {
     }
 }
 
-fn radius(entity: &Entity<'_>) -> Result<f64, Fault> {
+/// The radius; `None` if it is 0.
+fn radius(entity: &Entity<'_>) -> Result<Option<f64>, Fault> {
     match entity.number(40)? {
-        radius if radius > 0.0 => Ok(radius),
-        radius => Err(entity.fault(format_args!("radius {radius}; it must be above 0"))),
+        0.0 => Ok(None),
+        radius if radius > 0.0 => Ok(Some(radius)),
+        radius => Err(entity.fault(format_args!("radius {radius}; it must not be negative"))),
     }
+}
+
+/// The four corners of a SOLID, TRACE or 3DFACE in the order of the file; the fourth may be left out.
+fn corners_of_face(entity: &Entity<'_>) -> Result<[DVec2; 4], Fault> {
+    let [a, b, c] = [point(entity, 10)?, point(entity, 11)?, point(entity, 12)?];
+    Ok([a, b, c, if entity.text(13).is_some() { point(entity, 13)? } else { c }])
+}
+
+/// The sides of a face that are not marked as invisible: those lie between faces that are one.
+fn face(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<Drawn, Fault> {
+    let (corners, flags) = (corners_of_face(entity)?, entity.flags(70)?);
+    for side in 0..4 {
+        let [from, to] = [corners[side], corners[(side + 1) % 4]];
+        if flags >> side & 1 == 0 && from != to {
+            let drawn = pen.polyline(&[from, to], false);
+            if drawn.is_err() {
+                return Ok(drawn);
+            }
+        }
+    }
+    Ok(Ok(()))
+}
+
+/// The greatest width of a polyline, 0 of all others.
+pub(super) fn width(entity: &Entity<'_>) -> Result<f64, Fault> {
+    let codes: &[i32] = match entity.kind {
+        "LWPOLYLINE" => &[40, 41, 43],
+        "POLYLINE" => &[40, 41],
+        _ => return Ok(0.0),
+    };
+    let mut widest = 0.0f64;
+    for entity in std::iter::once(entity).chain(&entity.parts) {
+        for &code in codes {
+            widest = entity.numbers(code)?.into_iter().fold(widest, f64::max);
+        }
+    }
+    Ok(widest)
 }
 
 /// How far it is from one angle on to another, in degrees above 0 up to a whole turn.

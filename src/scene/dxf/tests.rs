@@ -128,6 +128,168 @@ fn hidden_things_are_no_walls_and_others_are_counted() {
 }
 
 #[test]
+fn a_layer_that_is_off_hides_what_lies_on_it_and_a_frozen_one_what_is_inserted_there() {
+    let layers = "SECTION 2=TABLES LAYER 2=off 62=-7 LAYER 2=ice 70=1 LAYER 2=both 62=-1 70=5 ENDSEC";
+    let on = |layer: &str, x: f64| format!("LINE 8={layer} 10={x} 20=0 11={x} 21=1");
+    let room = [on("walls", 1.0), on("0", 2.0), on("off", 3.0), on("ice", 4.0)].join(" ");
+    let insert = |block: &str, layer: &str| format!("INSERT 2={block} 8={layer} 10=0 20=0");
+    let nested = |layer: &str| format!("{} {}", insert("room", layer), on("0", 9.0));
+    let blocks = [
+        ("2=room", room.as_str()),
+        ("2=plain", &nested("0")),
+        ("2=dark", &nested("off")),
+        ("2=cold", &nested("ice")),
+        ("2=seen", &nested("walls")),
+    ];
+    let shown = |block: &str, layer: &str| {
+        let scene = parsed(&file(layers, &blocks, &insert(block, layer))).unwrap();
+        walls_of(&scene).iter().map(|w| w[0]).collect::<Vec<_>>()
+    };
+    assert_eq!(shown("room", "walls"), [1., 2.]);
+    assert_eq!(shown("room", "0"), [1., 2.]);
+    // What lies on layer 0 of a block lies on the layer of its insert.
+    assert_eq!(shown("room", "off"), [1.]);
+    assert!(shown("room", "ice").is_empty() && shown("room", "both").is_empty());
+    assert_eq!(shown("plain", "off"), [1.]);
+    assert_eq!(shown("dark", "walls"), [1., 9.]);
+    assert_eq!(shown("cold", "walls"), [9.]);
+    assert_eq!(shown("seen", "off"), [1., 2.]);
+    assert!(shown("seen", "ICE").is_empty());
+    let invisible = parsed(&file(layers, &blocks, &(insert("room", "off") + " 60=1"))).unwrap();
+    assert!(invisible.walls().is_empty());
+}
+
+#[test]
+fn what_has_no_extent_is_dropped_and_counted() {
+    let nothing = [
+        "CIRCLE 10=1 20=1 40=0",
+        "ARC 10=1 20=1 40=0.0 50=0 51=90",
+        "ELLIPSE 10=1 20=2 11=0 21=0 40=0.5",
+        "ELLIPSE 10=1 20=2 11=1 21=0 40=0",
+        "LWPOLYLINE 90=0",
+        "LWPOLYLINE 90=1 10=1 20=1",
+        "POLYLINE SEQEND",
+        "LINE 10=1 20=2 11=1 21=2",
+        "SPLINE 71=1 40=1 40=1 40=1 40=1 10=0 20=0 10=1 20=1",
+        "INSERT 2=A 10=0 20=0 41=0",
+        "INSERT 2=A 10=0 20=0 41=0 42=0",
+        "3DFACE 10=1 20=1 11=1 21=1 12=1 22=1",
+    ];
+    for entity in nothing {
+        let scene = parsed(&file("", &[("2=A", LINE)], &format!("{LINE} {entity}"))).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!((scene.walls().len(), scene.dropped()), (1, 1), "{entity}");
+    }
+}
+
+#[test]
+fn painted_areas_are_solid_walls() {
+    // The corners of a SOLID come along two opposite sides.
+    let solid = "10=0 20=0 11=4 21=0 12=0 22=3 13=4 23=3";
+    let square = [[0., 0., 4., 0.], [4., 0., 4., 3.], [4., 3., 0., 3.], [0., 3., 0., 0.]];
+    assert_eq!(walls(&[], &format!("SOLID {solid}")), square);
+    assert_eq!(walls(&[], &format!("TRACE {solid}")), square);
+    let triangle = [[0., 0., 4., 0.], [4., 0., 0., 3.], [0., 3., 0., 0.]];
+    assert_eq!(walls(&[], "SOLID 10=0 20=0 11=4 21=0 12=0 22=3"), triangle);
+    assert_eq!(walls(&[], "SOLID 10=0 20=0 11=4 21=0 12=0 22=3 13=0 23=3"), triangle);
+    assert_eq!(walls(&[], "SOLID 230=-1 10=0 20=0 11=4 21=0 12=0 22=3")[0], [0., 0., -4., 0.]);
+    // Those of a face in space go round, and some of its sides are not seen.
+    let face = "3DFACE 10=0 20=0 11=4 21=0 12=4 22=3 13=0 23=3";
+    assert_eq!(walls(&[], face), square);
+    assert_eq!(walls(&[], &format!("{face} 70=5")), [square[1], square[3]]);
+    assert_eq!(walls(&[], "3DFACE 10=0 20=0 11=4 21=0 12=0 22=3 13=0 23=3"), triangle);
+    let unseen = parsed(&file("", &[], &format!("{face} 70=15"))).unwrap();
+    assert_eq!((unseen.walls().len(), unseen.dropped(), unseen.notes().len()), (0, 0, 2));
+    let inside = |entities: &str| {
+        let scene = parsed(&file("", &[], entities)).unwrap();
+        scene.objects()[scene.object_of(0)].inside
+    };
+    assert_eq!(inside(&format!("SOLID {solid}")), Inside::EvenOdd);
+    assert_eq!(inside(&format!("SOLID {solid} POINT 8=anchor 10=1 20=1")), Inside::Free);
+    assert_eq!(inside(&format!("SOLID {solid} POINT 8=anchor 10=0 20=1")), Inside::EvenOdd);
+    // A closed line may be the border of a room as well.
+    assert_eq!(inside("LWPOLYLINE 70=1 10=0 20=0 10=4 20=0 10=4 20=3"), Inside::Free);
+    assert_eq!(inside(face), Inside::Free);
+}
+
+#[test]
+fn entities_keep_their_layer_and_the_name_of_their_block() {
+    let blocks = [("2=A", LINE), ("2=B", "INSERT 2=A 8=inner 10=0 20=0"), ("2=*U7", LINE)];
+    let of = |entities: &str| {
+        let scene = parsed(&file("", &blocks, entities)).unwrap();
+        let object = scene.objects()[scene.object_of(0)].clone();
+        (object.label.unwrap_or_default(), object.layers.join("/"))
+    };
+    let both = |label: &str, layer: &str| (label.to_string(), layer.to_string());
+    assert_eq!(of(&format!("TEXT {LINE}")), both("", "0"));
+    assert_eq!(of(&format!("{LINE} 8=Walls")), both("", "Walls"));
+    assert_eq!(of("INSERT 2=A 8=doors 10=0 20=0"), both("A", "doors"));
+    assert_eq!(of("INSERT 2=B 8=doors 10=0 20=0"), both("A", "inner"));
+    assert_eq!(of("INSERT 2=*U7 8=doors 10=0 20=0"), both("", "doors"));
+}
+
+/// What is said of a drawing beside its unit and its curves.
+fn notes(blocks: &[(&str, &str)], entities: &str, after: &str) -> Vec<String> {
+    let text = file("", blocks, entities).replace("0\nEOF\n", "");
+    let groups = |words: &str| {
+        let pairs = words.split_whitespace().map(|word| match word.split_once('=') {
+            Some((code, value)) => format!("{code}\n{value}\n"),
+            None => format!("0\n{word}\n"),
+        });
+        pairs.collect::<String>()
+    };
+    let scene = parsed(&format!("{text}{}0\nEOF\n", groups(after))).unwrap();
+    scene.notes()[1..].iter().filter(|note| !note.starts_with("walls lie within")).cloned().collect()
+}
+
+#[test]
+fn clips_and_other_files_are_told_of() {
+    let blocks =
+        [("2=A", LINE), ("2=plan 70=4 1=site/plan.dwg", ""), ("2=over 70=12", ""), ("2=bound 70=4 1=x.dwg", LINE)];
+    let insert = "INSERT 2=A 102={ACAD_XDICTIONARY 360=36 102=} 10=0 20=0";
+    let objects = |on: &str| {
+        let dictionaries = "DICTIONARY 5=36 3=ACAD_FILTER 350=37 DICTIONARY 5=37 3=SPATIAL 360=38";
+        format!("SECTION 2=OBJECTS {dictionaries} SPATIAL_FILTER 5=38 70=2 {on} ENDSEC")
+    };
+    let note =
+        |count: usize| vec![format!("clips of inserted blocks (XCLIP) cut no walls; inserts taken whole: {count}")];
+    assert_eq!(notes(&blocks, insert, &objects("71=1")), note(1));
+    assert_eq!(notes(&blocks, &format!("{insert} {insert} INSERT 2=A 10=0 20=0"), &objects("")), note(2));
+    assert_eq!(notes(&blocks, insert, &objects("71=0")), [""; 0]);
+    assert_eq!(notes(&blocks, insert, ""), [""; 0]);
+    let twice = "INSERT 2=plan 10=0 20=0 INSERT 2=PLAN 10=9 20=0 INSERT 2=over 10=0 20=0 INSERT 2=bound 10=0 20=0";
+    let missing = "what lies in other files is missing; inserts of external references: 1 over, 2 site/plan.dwg";
+    assert_eq!(notes(&blocks, twice, ""), [missing]);
+}
+
+#[test]
+fn widths_of_polylines_are_told_of() {
+    let wide = |count: usize, widest: f64| {
+        [format!("walls are the middle of polylines, whose widest is {widest} wide; polylines with a width: {count}")]
+    };
+    let line = "10=0 20=0 10=4 20=0";
+    assert_eq!(notes(&[], &format!("LWPOLYLINE 43=2 {line} LWPOLYLINE 43=0 {line}"), ""), wide(1, 2.0));
+    assert_eq!(notes(&[], "LWPOLYLINE 10=0 20=0 40=0 41=3 10=4 20=0 40=0 41=0", ""), wide(1, 3.0));
+    let old = "POLYLINE 40=0.5 41=0.5 VERTEX 10=0 20=0 VERTEX 10=1 20=0 SEQEND";
+    let vertex = "POLYLINE VERTEX 10=0 20=0 40=1.5 VERTEX 10=1 20=0 SEQEND";
+    assert_eq!(notes(&[], &format!("{old} {vertex}"), ""), wide(2, 1.5));
+    let block = [("2=A", "LWPOLYLINE 43=2 10=0 20=0 10=4 20=0")];
+    assert_eq!(notes(&block, "INSERT 2=A 10=0 20=0 41=10 42=-10", ""), wide(1, 20.0));
+    // Widths are those of polylines alone: this is a radius.
+    assert_eq!(notes(&[], "CIRCLE 10=0 20=0 40=2", ""), [""; 0]);
+}
+
+#[test]
+fn what_nearly_marks_the_anchor_is_told_of() {
+    let right = "; what marks the anchor is a POINT on the layer \"anchor\"";
+    let point = "POINT 8=Anchors 10=0 20=0";
+    assert_eq!(notes(&[], point, ""), [format!("POINT in line 12 lies on the layer \"Anchors\"{right}")]);
+    let block = [("2=ANCHOR", LINE)];
+    let expected = format!("INSERT in line 28 is of the block \"ANCHOR\"{right}");
+    assert_eq!(notes(&block, "INSERT 2=ANCHOR 10=0 20=0", ""), [expected]);
+    assert_eq!(notes(&[], &format!("{point} POINT 8=anchor 10=1 20=1"), ""), [""; 0]);
+}
+
+#[test]
 fn units_are_told() {
     let unit = |header: &str| {
         parsed(&file(&format!("SECTION 2=HEADER {header} ENDSEC"), &[], LINE)).unwrap().notes()[0].clone()
@@ -163,7 +325,8 @@ fn faults_name_line_and_entity() {
         ("LINE 10=nan 20=0 11=1 21=1", "line 12: LINE: NaN is not a finite number"),
         ("LINE 10=1e200 20=0 11=1 21=1", "line 12: LINE: 1e200 is too large for exact products"),
         ("LINE 67=x", "line 12: LINE: group code 67 has the value \"x\"; it must be a whole number"),
-        ("CIRCLE 10=0 20=0 40=0", "line 12: CIRCLE: radius 0; it must be above 0"),
+        ("CIRCLE 10=0 20=0 40=-1", "line 12: CIRCLE: radius -1; it must not be negative"),
+        ("SOLID 10=0 20=0 11=1 21=1", "line 12: SOLID: no number with the group code 12"),
         ("LWPOLYLINE 10=0 10=1 20=3", "line 12: LWPOLYLINE: corner 0 has an x but no y"),
         ("POLYLINE 70=64 SEQEND", "line 12: POLYLINE: is a mesh in space; explode it into lines"),
         ("INSERT 2=no 10=0 20=0", "line 12: INSERT: the drawing has no block \"no\""),

@@ -5,26 +5,33 @@
 //! read, so the tree is walked here.
 
 mod bounds;
+mod css_transform;
+mod label;
+mod length;
+mod notes;
 mod page;
+mod paint;
 mod path;
 mod shapes;
+mod sheet;
 mod style;
 mod transform;
+mod used;
 
-use std::collections::{BTreeMap, HashMap};
-use std::str::FromStr;
+use std::collections::HashMap;
 
 use glam::{DAffine2, DVec2};
 use roxmltree::{Document, Node, ParsingOptions};
-use svgtypes::AspectRatio;
 
 use super::curves::Outlines;
-use super::{Scene, excerpt, listed};
+use super::{Object, Scene, excerpt, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
-use page::{view_box, viewport_of};
-use shapes::{Along, Shape};
-use style::Styles;
+use notes::Counts;
+use page::viewport_of;
+use paint::Paint;
+use shapes::{SHAPES, Shape};
+use style::{Style, Styles};
 
 const SVG: &str = "http://www.w3.org/2000/svg";
 const XLINK: &str = "http://www.w3.org/1999/xlink";
@@ -62,9 +69,9 @@ const DEFINITIONS: [&str; 20] = [
 
 /// Reads a drawing.
 ///
-/// path, line, polyline, polygon, rect, circle and ellipse are walls, in groups and used ones too, whatever their paint.
-/// What is hidden is none; texts and images are none and are counted. The element with the id or the Inkscape label
-/// `anchor` marks the anchor by its middle.
+/// path, line, polyline, polygon, rect, circle and ellipse are walls, in groups and used ones too. What is hidden or not
+/// painted is none; texts and images are none and are counted. The element with the id or the Inkscape label `anchor` marks
+/// the anchor by its middle, painted or not.
 pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
     bounds::check_entities(text)?;
     bounds::check_tags(text)?;
@@ -79,10 +86,9 @@ pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
         return Err(fault_at(root, &what));
     }
     let mut reader = Reader::new(&document, text.len());
-    let (viewport, unit) = viewport_of(root).map_err(|what| fault_at(root, &what))?;
-    let context = Context { transform: DAffine2::IDENTITY, visible: true, viewport, depth: 0 };
-    let context = reader.context(root, &context)?;
-    if let Some(context) = context {
+    let (viewport, unit) = viewport_of(root, &reader.styles.of_element(root)).map_err(|what| fault_at(root, &what))?;
+    let outer = Context { transform: DAffine2::IDENTITY, paint: Paint::default(), viewport, depth: 0, user: None };
+    if let Some((context, _)) = reader.context(root, &outer)? {
         reader.children(root, &context)?;
     }
     reader.scene(flatten, &unit)
@@ -105,11 +111,13 @@ fn fault_at(node: Node<'_, '_>, what: &str) -> Fault {
 
 /// What an element inherits.
 #[derive(Clone, Copy)]
-struct Context {
+struct Context<'a, 'i> {
     transform: DAffine2,
-    visible: bool,
+    paint: Paint,
     viewport: Option<DVec2>,
     depth: usize,
+    /// The `use` that draws just this element.
+    user: Option<Node<'a, 'i>>,
 }
 
 /// Walks the tree.
@@ -117,14 +125,13 @@ struct Reader<'a, 'i> {
     styles: Styles<'a>,
     ids: HashMap<&'a str, Node<'a, 'i>>,
     outlines: Outlines,
+    /// The layers and groups round what is drawn now.
+    layers: Vec<String>,
     /// Where the anchor is, and the element that marks it.
     anchor: Option<(DVec2, Node<'a, 'i>)>,
     /// Whether what is drawn now marks the anchor.
     in_anchor: bool,
-    /// What is passed over, by name, and how many elements are hidden or cut.
-    passed: BTreeMap<&'a str, usize>,
-    hidden: usize,
-    clipped: usize,
+    counts: Counts<'a>,
     visited: usize,
     /// How many elements and lines there may be.
     most: usize,
@@ -143,67 +150,67 @@ impl<'a, 'i> Reader<'a, 'i> {
             styles: Styles::of(document),
             ids,
             outlines: Outlines::default(),
+            layers: Vec::new(),
             anchor: None,
             in_anchor: false,
-            passed: BTreeMap::new(),
-            hidden: 0,
-            clipped: 0,
+            counts: Counts::default(),
             visited: 0,
             most: length + USED_MAX,
         }
     }
 
     fn scene(self, flatten: Option<f64>, unit: &str) -> Result<Scene, Fault> {
-        let flat = self.outlines.flatten(flatten).map_err(|what| Fault::new(Place::default(), what))?;
+        let side = self.outlines.bounds().map_or(0.0, |[low, high]| (high - low).max_element());
+        let mut flat = self.outlines.flatten(flatten).map_err(|what| Fault::new(Place::default(), what))?;
+        if let Some((anchor, _)) = self.anchor {
+            flat.free_round(anchor);
+        }
         let note = flat.note();
         let mut scene = Scene::of(flat.objects, flat.walls)?.with_y_down();
+        scene.dropped += self.counts.dropped;
         if let Some((anchor, _)) = self.anchor {
             scene = scene.with_anchor(anchor);
         }
         scene.note(format!("{unit}; y points down, as in the file"));
         note.into_iter().for_each(|note| scene.note(note));
-        if self.hidden > 0 {
-            scene.note(format!("hidden elements, which are no walls: {}", self.hidden));
-        }
-        if self.clipped > 0 {
-            scene.note(format!("clip paths and masks cut no walls; elements taken whole: {}", self.clipped));
-        }
-        if !self.passed.is_empty() {
-            scene.note(format!("passed over: {}", listed(&self.passed)));
-        }
+        self.styles.unread.note().into_iter().for_each(|note| scene.note(note));
+        self.counts.tell(&mut scene, side);
         Ok(scene)
     }
 
-    fn children(&mut self, node: Node<'a, 'i>, context: &Context) -> Result<(), Fault> {
+    fn children(&mut self, node: Node<'a, 'i>, context: &Context<'a, 'i>) -> Result<(), Fault> {
         node.children().filter(Node::is_element).try_for_each(|child| self.element(child, context))
     }
 
-    /// What the insides of `node` inherit; `None` if they are hidden.
-    fn context(&mut self, node: Node<'a, 'i>, outer: &Context) -> Result<Option<Context>, Fault> {
-        let looks = self.styles.looks(node);
+    /// What the insides of `node` inherit, and its own style; `None` if they are hidden.
+    fn context(
+        &mut self,
+        node: Node<'a, 'i>,
+        outer: &Context<'a, 'i>,
+    ) -> Result<Option<(Context<'a, 'i>, Style<'a>)>, Fault> {
+        let style = self.styles.of_element(node);
         if self.styles.is_spent() {
             return Err(fault_at(node, "the style sheets have too many rules for so many elements, or too deep ones"));
         }
-        if looks.removed {
-            self.hidden += 1;
+        if style.word("display") == "none" {
+            self.counts.hidden += 1;
             return Ok(None);
         }
-        if looks.moved || node.has_attribute("transform-origin") {
-            let what = "moved by a style (transform, transform-origin); write the attribute transform alone";
-            return Err(fault_at(node, what));
+        let cut = |name| style.get(name).is_some_and(|value| !value.is(&["none"]));
+        self.counts.clipped += usize::from(cut("clip-path") || cut("mask"));
+        let own = transform::own(&style, outer.viewport).map_err(|what| fault_at(node, &what))?;
+        // What is pressed flat is not drawn.
+        if own.matrix2.determinant() == 0.0 {
+            self.counts.hidden += 1;
+            return Ok(None);
         }
-        self.clipped += usize::from(looks.clipped);
-        let own = transform::transform(node.attribute("transform").unwrap_or_default());
-        let own = own.map_err(|what| fault_at(node, &what))?;
-        Ok(Some(Context {
-            transform: outer.transform * own,
-            visible: looks.visible.unwrap_or(outer.visible),
-            viewport: outer.viewport,
-            depth: outer.depth + 1,
-        }))
+        let (paint, unread) = outer.paint.within(&style, outer.viewport, |id| self.ids.contains_key(id));
+        unread.iter().for_each(|what| self.styles.unread.add(what));
+        let context = Context { transform: outer.transform * own, paint, depth: outer.depth + 1, ..*outer };
+        Ok(Some((context, style)))
     }
 
-    fn element(&mut self, node: Node<'a, 'i>, outer: &Context) -> Result<(), Fault> {
+    fn element(&mut self, node: Node<'a, 'i>, outer: &Context<'a, 'i>) -> Result<(), Fault> {
         let name = node.tag_name();
         let foreign = name.namespace().is_some_and(|namespace| namespace != SVG);
         if foreign || DEFINITIONS.contains(&name.name()) || name.name() == "symbol" {
@@ -216,22 +223,29 @@ impl<'a, 'i> Reader<'a, 'i> {
         if outer.depth >= DEPTH_MAX {
             return Err(fault_at(node, &format!("elements lie in or use each other more than {DEPTH_MAX} deep")));
         }
-        let Some(context) = self.context(node, outer)? else { return Ok(()) };
+        let Some((context, style)) = self.context(node, outer)? else { return Ok(()) };
         let marks = node.attribute("id") == Some("anchor") || node.attribute((INKSCAPE, "label")) == Some("anchor");
         if marks && !self.in_anchor {
-            return self.mark(node, &context);
+            return self.mark(node, &style, &context);
         }
-        self.insides(node, &context)
+        if !self.in_anchor && self.counts.nearly.is_none() && label::is_called(node, nearly_anchor) {
+            let line = node.document().text_pos_at(node.range().start).row;
+            let called = label::label(node).unwrap_or_default();
+            let called = format!("<{}> in line {line} is called {:?}", node.tag_name().name(), excerpt(&called));
+            self.counts.nearly = Some(called);
+        }
+        self.insides(node, &style, &context)
     }
 
     /// Takes the middle of what `node` draws for the anchor.
-    fn mark(&mut self, node: Node<'a, 'i>, context: &Context) -> Result<(), Fault> {
+    fn mark(&mut self, node: Node<'a, 'i>, style: &Style<'a>, context: &Context<'a, 'i>) -> Result<(), Fault> {
         let walls = std::mem::take(&mut self.outlines);
         self.in_anchor = true;
-        self.insides(node, context)?;
+        self.insides(node, style, context)?;
         self.in_anchor = false;
         let mark = std::mem::replace(&mut self.outlines, walls);
-        let centre = Shape { node, viewport: context.viewport }.centre().map_err(|what| fault_at(node, &what))?;
+        let centre =
+            Shape { node, style, viewport: context.viewport }.centre().map_err(|what| fault_at(node, &what))?;
         let at = match (centre, mark.bounds()) {
             (Some(centre), _) => context.transform.transform_point2(centre),
             (None, Some([low, high])) => low + (high - low) / 2.0,
@@ -249,90 +263,71 @@ impl<'a, 'i> Reader<'a, 'i> {
     }
 
     /// Draws `node` itself, or what is in it.
-    fn insides(&mut self, node: Node<'a, 'i>, context: &Context) -> Result<(), Fault> {
+    fn insides(&mut self, node: Node<'a, 'i>, style: &Style<'a>, context: &Context<'a, 'i>) -> Result<(), Fault> {
+        let within = Context { user: None, ..*context };
         match node.tag_name().name() {
-            "g" | "a" => self.children(node, context),
-            "svg" => self.viewport(node, node, context),
-            "use" => self.used(node, context),
-            "switch" => {
-                let usual = |n: &Node<'_, '_>| {
-                    n.is_element() && !n.has_attribute("requiredExtensions") && !n.has_attribute("systemLanguage")
-                };
-                node.children().find(usual).map_or(Ok(()), |child| self.element(child, context))
-            }
-            _ if !context.visible => {
-                self.hidden += 1;
-                Ok(())
-            }
-            name => {
-                let shape = Shape { node, viewport: context.viewport };
-                let drawn = shape.draw(&mut self.outlines.pen(context.transform));
-                if !drawn.map_err(|what| fault_at(node, &what))? {
-                    *self.passed.entry(name).or_default() += 1;
+            "g" | "a" | "svg" | "switch" => {
+                let named = label::layer(node);
+                self.layers.extend(named.clone());
+                match node.tag_name().name() {
+                    "svg" => self.viewport(node, style, None, &within)?,
+                    "switch" => {
+                        let usual = |n: &Node<'_, '_>| {
+                            n.is_element()
+                                && !n.has_attribute("requiredExtensions")
+                                && !n.has_attribute("systemLanguage")
+                        };
+                        node.children().find(usual).map_or(Ok(()), |child| self.element(child, &within))?;
+                    }
+                    _ => self.children(node, &within)?,
                 }
+                self.layers.truncate(self.layers.len() - usize::from(named.is_some()));
                 Ok(())
             }
+            "use" => self.used(node, style, &within),
+            _ if !context.paint.visible => {
+                self.counts.hidden += 1;
+                Ok(())
+            }
+            name if !SHAPES.contains(&name) => {
+                *self.counts.passed.entry(name).or_default() += 1;
+                Ok(())
+            }
+            name if !self.in_anchor && !context.paint.shows(name == "line") => {
+                self.counts.unpainted += 1;
+                Ok(())
+            }
+            _ => self.shape(node, style, context),
         }
     }
 
-    /// Draws what a `use` refers to.
-    fn used(&mut self, node: Node<'a, 'i>, context: &Context) -> Result<(), Fault> {
-        let fault = |what: String| fault_at(node, &what);
-        let Some(href) = node.attribute("href").or(node.attribute((XLINK, "href"))) else {
-            return Err(fault("names nothing to use; it needs href=\"#id\"".into()));
-        };
-        let Some(id) = href.strip_prefix('#') else {
-            return Err(fault(format!("uses {:?} of another file; copy it into this one", excerpt(href))));
-        };
-        let Some(&target) = self.ids.get(id) else {
-            return Err(fault(format!("uses the element {id:?}, which the file does not have")));
-        };
-        let shape = Shape { node, viewport: context.viewport };
-        let [x, y] = [shape.length("x", Along::X), shape.length("y", Along::Y)];
-        let by = DVec2::new(x.map_err(fault)?.unwrap_or(0.0), y.map_err(fault)?.unwrap_or(0.0));
-        let moved = Context { transform: context.transform * DAffine2::from_translation(by), ..*context };
-        if matches!(target.tag_name().name(), "symbol" | "svg") {
-            if context.depth >= DEPTH_MAX {
-                return Err(fault(format!("elements lie in or use each other more than {DEPTH_MAX} deep")));
-            }
-            match self.context(target, &moved)? {
-                Some(inner) => self.viewport(target, node, &inner),
-                None => Ok(()),
-            }
-        } else {
-            self.element(target, &moved)
+    /// Draws a shape that is seen.
+    fn shape(&mut self, node: Node<'a, 'i>, style: &Style<'a>, context: &Context<'a, 'i>) -> Result<(), Fault> {
+        let label = context.user.and_then(label::label).or_else(|| label::label(node));
+        // Names take room too where something is used again and again.
+        let names = label.iter().chain(&self.layers).map(String::len).sum::<usize>();
+        self.visited += names / 16;
+        self.outlines.begin(Object { label, layers: self.layers.clone(), ..Object::default() });
+        let from = self.outlines.len();
+        let shape = Shape { node, style, viewport: context.viewport };
+        let drawn = shape.draw(&mut self.outlines.pen(context.transform));
+        drawn.map_err(|what| fault_at(node, &what))?;
+        let drawn = self.outlines.since(from);
+        if let Some(object) = self.outlines.objects.last_mut() {
+            object.inside = context.paint.inside(drawn.closed);
         }
-    }
-
-    /// Draws what is in `node`, a viewport of its own; `sized` says how large it is.
-    fn viewport(&mut self, node: Node<'a, 'i>, sized: Node<'a, 'i>, context: &Context) -> Result<(), Fault> {
-        let fault = |what: String| fault_at(node, &what);
-        let size_of = |name: &str, along: Along| {
-            let of = |node| Shape { node, viewport: context.viewport }.size(name, along);
-            of(sized).and_then(|size| if size.is_some() { Ok(size) } else { of(node) }).map_err(fault)
-        };
-        let [width, height] = [size_of("width", Along::X)?, size_of("height", Along::Y)?];
-        let size = width.zip(height).map(|(w, h)| DVec2::new(w, h)).or(context.viewport);
-        let shape = Shape { node, viewport: context.viewport };
-        let at = match node.tag_name().name() {
-            "svg" => DVec2::new(
-                shape.length("x", Along::X).map_err(fault)?.unwrap_or(0.0),
-                shape.length("y", Along::Y).map_err(fault)?.unwrap_or(0.0),
-            ),
-            _ => DVec2::ZERO,
-        };
-        let mut inner = Context { viewport: size, ..*context };
-        inner.transform *= DAffine2::from_translation(at);
-        if let Some(view) = view_box(node).map_err(fault)? {
-            let aspect = node.attribute("preserveAspectRatio").unwrap_or("xMidYMid");
-            let aspect = AspectRatio::from_str(aspect).map_err(|e| fault(format!("preserveAspectRatio: {e}")))?;
-            let size = size.ok_or_else(|| fault("has a viewBox but no known size; give width and height".into()))?;
-            inner.transform *= transform::fitted(view, size, aspect);
-            inner.viewport = Some(DVec2::new(view.w, view.h));
+        if !self.in_anchor {
+            self.counts.dropped += usize::from(drawn.lines == 0);
+            let bears = matches!(node.tag_name().name(), "line" | "path" | "polygon" | "polyline");
+            self.counts.marked += usize::from(bears && context.paint.marked());
+            let scale = context.transform.matrix2.determinant().abs().sqrt();
+            self.counts.widths.push(context.paint.width() * scale);
         }
-        self.children(node, &inner)
+        Ok(())
     }
 }
 
+#[cfg(test)]
+mod looks_tests;
 #[cfg(test)]
 mod tests;

@@ -1,37 +1,35 @@
-//! Basic shapes, and the lengths that describe them.
-
-use std::str::FromStr;
+//! Basic shapes.
 
 use glam::DVec2;
 use roxmltree::Node;
-use svgtypes::{Length, LengthUnit, NumberListParser};
+use svgtypes::NumberListParser;
 
 use super::super::curves::Ellipse;
 use super::super::excerpt;
 use super::super::pen::{Drawn, Pen};
+use super::length::{Along, length};
 use super::path;
+use super::style::{Style, Value};
 
-/// What a percentage is a part of.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Along {
-    X,
-    Y,
-    /// Neither: the viewport's diagonal over the square root of two.
-    Both,
-}
+/// The elements that are drawn as walls.
+pub(super) const SHAPES: [&str; 7] = ["circle", "ellipse", "line", "path", "polygon", "polyline", "rect"];
 
-/// An element and the size of its viewport, if that is known.
+/// The lengths that style sheets do not know.
+const ATTRIBUTES_ONLY: [&str; 4] = ["x1", "x2", "y1", "y2"];
+
+/// An element, its style, and the size of its viewport, if that is known.
 #[derive(Clone, Copy)]
-pub(super) struct Shape<'a, 'i> {
+pub(super) struct Shape<'s, 'a, 'i> {
     pub(super) node: Node<'a, 'i>,
+    pub(super) style: &'s Style<'a>,
     pub(super) viewport: Option<DVec2>,
 }
 
-impl Shape<'_, '_> {
-    /// Draws the element if it is a shape, and says whether it is.
-    pub(super) fn draw(&self, pen: &mut Pen<'_>) -> Result<bool, String> {
+impl Shape<'_, '_, '_> {
+    /// Draws the element, which is one of [`SHAPES`].
+    pub(super) fn draw(&self, pen: &mut Pen<'_>) -> Result<(), String> {
         match self.node.tag_name().name() {
-            "path" => path::draw(self.node.attribute("d").unwrap_or_default(), pen)?,
+            "path" => path::draw(self.data()?, pen)?,
             "line" => {
                 let [from, to] = [self.point("x1", "y1")?, self.point("x2", "y2")?];
                 pen.polyline(&[from, to], false).map_err(|fault| fault.to_string())?;
@@ -39,16 +37,29 @@ impl Shape<'_, '_> {
             "polyline" => pen.polyline(&self.points()?, false).map_err(|fault| fault.to_string())?,
             "polygon" => pen.polyline(&self.points()?, true).map_err(|fault| fault.to_string())?,
             "rect" => self.rect(pen)?,
-            "circle" | "ellipse" => {
+            _ => {
                 let (centre, radii) = self.round()?;
                 if radii.min_element() > 0.0 {
                     let [a, b] = [DVec2::new(radii.x, 0.0), DVec2::new(0.0, radii.y)];
                     pen.ellipse(centre, a, b).map_err(|fault| fault.to_string())?;
                 }
             }
-            _ => return Ok(false),
         }
-        Ok(true)
+        Ok(())
+    }
+
+    /// Path data: of the attribute, or in a style's `path("...")`.
+    fn data(&self) -> Result<&str, String> {
+        match self.style.get("d") {
+            Some(Value { text, css: false }) => Ok(text),
+            Some(value) if !value.is(&["none"]) => {
+                let quoted = in_quotes(value.text);
+                quoted.ok_or_else(|| {
+                    format!("d is {:?} in a style; it must be path(\"...\") or none", excerpt(value.text))
+                })
+            }
+            _ => Ok(""),
+        }
     }
 
     /// The centre, if the element is a circle or an ellipse.
@@ -86,7 +97,7 @@ impl Shape<'_, '_> {
         let drawn = if radii.min_element() == 0.0 {
             pen.polyline(&[low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)], true)
         } else {
-            rounded(pen, [low, high], radii)
+            rounded(pen, [low, high], radii, [radii.x == size.x / 2.0, radii.y == size.y / 2.0])
         };
         drawn.map_err(|fault| fault.to_string())
     }
@@ -105,27 +116,12 @@ impl Shape<'_, '_> {
 
     /// A length in the element's own coordinates; `None` if it is not given or `auto`.
     pub(super) fn length(&self, name: &str, along: Along) -> Result<Option<f64>, String> {
-        let Some(text) = self.node.attribute(name).map(str::trim).filter(|&text| text != "auto") else {
-            return Ok(None);
+        let value = if ATTRIBUTES_ONLY.contains(&name) {
+            self.node.attribute(name).map(|text| Value { text: text.trim(), css: false })
+        } else {
+            self.style.get(name)
         };
-        let length = Length::from_str(text)
-            .map_err(|_| format!("{name} is {:?}; it must be a length such as 12.5, 12.5mm or 50%", excerpt(text)))?;
-        Ok(Some(match length.unit {
-            LengthUnit::Percent => {
-                let all = self.viewport.ok_or_else(|| format!("{name} is {text:?}, but of what is not known"))?;
-                let all = match along {
-                    Along::X => all.x,
-                    Along::Y => all.y,
-                    Along::Both => (all.length_squared() / 2.0).sqrt(),
-                };
-                length.number / 100.0 * all
-            }
-            unit => {
-                let pixels = pixels(unit)
-                    .ok_or_else(|| format!("{name} is {text:?}, which depends on a font; give it in px or mm"))?;
-                length.number * pixels
-            }
-        }))
+        value.map_or(Ok(None), |value| length(name, value, along, self.viewport))
     }
 
     fn points(&self) -> Result<Vec<DVec2>, String> {
@@ -139,34 +135,34 @@ impl Shape<'_, '_> {
     }
 }
 
-/// How many pixels a unit is; `None` if that depends on something else.
-pub(super) fn pixels(unit: LengthUnit) -> Option<f64> {
-    match unit {
-        LengthUnit::None | LengthUnit::Px => Some(1.0),
-        LengthUnit::In => Some(96.0),
-        LengthUnit::Cm => Some(96.0 / 2.54),
-        LengthUnit::Mm => Some(96.0 / 25.4),
-        LengthUnit::Pt => Some(96.0 / 72.0),
-        LengthUnit::Pc => Some(16.0),
-        LengthUnit::Em | LengthUnit::Ex | LengthUnit::Percent => None,
-    }
+/// The text in quotes in `path(...)`.
+fn in_quotes(text: &str) -> Option<&str> {
+    let inside = text.strip_prefix("path(")?.strip_suffix(')')?.trim();
+    let quote = inside.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+    inside[1..].strip_suffix(quote).filter(|data| !data.contains(quote))
 }
 
-/// A rectangle with rounded corners, from its upper left one on.
-fn rounded(pen: &mut Pen<'_>, [low, high]: [DVec2; 2], radii: DVec2) -> Drawn {
+/// A rectangle with rounded corners, from its upper left one on. Where corners meet, along x or along y, there is no straight
+/// line between them.
+fn rounded(pen: &mut Pen<'_>, [low, high]: [DVec2; 2], radii: DVec2, met: [bool; 2]) -> Drawn {
     let [a, b] = [DVec2::new(radii.x, 0.0), DVec2::new(0.0, radii.y)];
-    pen.start(DVec2::new(low.x + radii.x, low.y))?;
-    for (corner, degrees) in
-        [(DVec2::new(high.x, low.y), -90.0), (high, 0.0), (DVec2::new(low.x, high.y), 90.0), (low, 180.0)]
-    {
-        // The centre lies a radius inwards of the corner, along both axes.
-        let inwards = radii * ((low + high) / 2.0 - corner).signum();
-        let arc = Ellipse { centre: corner + inwards, a, b, from: degrees, sweep: 90.0 };
-        let [from, to] = [DVec2::new(inwards.x, 0.0), DVec2::new(0.0, inwards.y)];
-        // Clockwise to the eye: at the right and the lower left corner the arc arrives along y.
-        let (from, to) = if degrees == -90.0 || degrees == 90.0 { (from, to) } else { (to, from) };
-        pen.line_to(corner + from)?;
-        pen.ellipse_to(arc, corner + to)?;
+    let middle = (low + high) / 2.0;
+    // Where the arcs begin and end, counted from either side.
+    let near = [if met[0] { middle.x } else { low.x + radii.x }, if met[1] { middle.y } else { low.y + radii.y }];
+    let far = [if met[0] { middle.x } else { high.x - radii.x }, if met[1] { middle.y } else { high.y - radii.y }];
+    pen.start(DVec2::new(near[0], low.y))?;
+    // Clockwise to the eye, each corner: its centre, and where its arc begins and ends.
+    for (centre, degrees, from, to) in [
+        ([far[0], near[1]], -90.0, [far[0], low.y], [high.x, near[1]]),
+        ([far[0], far[1]], 0.0, [high.x, far[1]], [far[0], high.y]),
+        ([near[0], far[1]], 90.0, [near[0], high.y], [low.x, far[1]]),
+        ([near[0], near[1]], 180.0, [low.x, near[1]], [near[0], low.y]),
+    ] {
+        let straight = if degrees == -90.0 || degrees == 90.0 { !met[0] } else { !met[1] };
+        if straight {
+            pen.line_to(from.into())?;
+        }
+        pen.ellipse_to(Ellipse { centre: centre.into(), a, b, from: degrees, sweep: 90.0 }, to.into())?;
     }
     pen.close();
     Ok(())
@@ -179,14 +175,16 @@ mod tests {
 
     use super::super::super::Wall;
     use super::super::super::curves::Outlines;
+    use super::super::style::Styles;
     use super::*;
 
     fn walls(element: &str) -> Result<Vec<[f64; 4]>, String> {
         let document = Document::parse(element).unwrap();
+        let style = Styles::of(&document).of_element(document.root_element());
         let mut outlines = Outlines::default();
         let viewport = Some(DVec2::new(200.0, 100.0));
-        let shape = Shape { node: document.root_element(), viewport };
-        assert!(shape.draw(&mut outlines.pen(DAffine2::IDENTITY))?, "{element}");
+        let shape = Shape { node: document.root_element(), style: &style, viewport };
+        shape.draw(&mut outlines.pen(DAffine2::IDENTITY))?;
         let walls = outlines.flatten(Some(0.01)).unwrap().walls;
         Ok(walls.iter().map(|&Wall { ends: [a, b], .. }| [a.x, a.y, b.x, b.y]).collect())
     }
@@ -225,9 +223,7 @@ mod tests {
         on(walls("<ellipse cx='5' cy='-1' rx='2' ry='3'/>").unwrap(), [5.0, -1.0], [2.0, 3.0]);
         on(walls("<ellipse rx='2' ry='auto'/>").unwrap(), [0.0, 0.0], [2.0, 2.0]);
         // Rounded so much that nothing straight is left.
-        let round: Vec<_> = walls("<rect x='3' y='-3' width='4' height='4' rx='9'/>").unwrap();
-        let arcs = round.iter().filter(|w| w[..2] != w[2..]).copied().collect();
-        on(arcs, [5.0, -1.0], [2.0, 2.0]);
+        on(walls("<rect x='3' y='-3' width='4' height='4' rx='9'/>").unwrap(), [5.0, -1.0], [2.0, 2.0]);
     }
 
     #[test]
@@ -242,12 +238,54 @@ mod tests {
     }
 
     #[test]
+    fn where_rounded_corners_meet_there_is_no_wall_between_them() {
+        // One radius is given and too large for one side: the other one stays, and no side is left at the ends.
+        let found = walls("<rect width='400' height='200' x='10' y='10' rx='134'/>").unwrap();
+        assert!(found.iter().all(|w| w[..2] != w[2..]), "{found:?}");
+        let straight = [[144., 10., 276., 10.], [276., 210., 144., 210.]];
+        assert!(straight.iter().all(|side| found.contains(side)), "{found:?}");
+        let off = |[x, y]: [f64; 2]| {
+            let x = (x - 210.0).abs() - 66.0;
+            if x > 0.0 {
+                ((x / 134.0).hypot((y - 110.0) / 100.0) - 1.0).abs()
+            } else {
+                ((y - 110.0).abs() - 100.0).abs()
+            }
+        };
+        assert!(found.iter().all(|w| off([w[0], w[1]]) < 1e-12));
+        // With sizes that are no sums of powers of two, no tiny wall comes in between either.
+        for x in [0.1, 0.3, 1.7, 12.345] {
+            let found = walls(&format!("<rect x='{x}' y='{x}' width='{x}' height='0.7' rx='9'/>")).unwrap();
+            assert!(found.iter().all(|w| (w[0] - w[2]).hypot(w[1] - w[3]) > 1e-3), "{x}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn style_sheets_give_lengths_too() {
+        let rect = [[1., 2., 4., 2.], [4., 2., 4., 4.], [4., 4., 1., 4.], [1., 4., 1., 2.]];
+        assert_eq!(walls("<rect style='x:1px;y:2px;width:3px;height:2px'/>").unwrap(), rect);
+        assert_eq!(walls("<rect x='9' style='x:0.5%;y:2px;width:3px;HEIGHT:2px' width='7'/>").unwrap(), rect);
+        let circle = walls("<circle cx='5' cy='5' r='2'/>");
+        assert_eq!(walls("<circle style='cx:5px;cy:5px;r:2px'/>"), circle);
+        assert_eq!(walls("<ellipse style='cx:5px;cy:5px;rx:2px'/>"), circle);
+        assert_eq!(walls("<path style='d:path(\"M1,2 L4,2\")' d='M0,0h1'/>").unwrap(), [rect[0]]);
+        assert!(walls("<path style='d:none' d='M0,0h1'/>").unwrap().is_empty());
+        assert_eq!(walls("<line style='x1:7px' x2='3' y2='0.5'/>").unwrap(), [[0., 0., 3., 0.5]]);
+    }
+
+    #[test]
     fn faults_say_what_would_be_right() {
         for (element, what) in [
             ("<line x2='far'/>", "x2 is \"far\"; it must be a length such as 12.5, 12.5mm or 50%"),
             ("<line x2='2em'/>", "x2 is \"2em\", which depends on a font; give it in px or mm"),
             ("<circle r='-1'/>", "r is -1; it must not be negative"),
             ("<rect width='1' height='-2'/>", "height is -2; it must not be negative"),
+            ("<circle style='r:8'/>", "r is \"8\" in a style, where lengths need a unit, such as 8px"),
+            (
+                "<circle style='r:calc(1px + 2px)'/>",
+                "r is \"calc(1px + 2px)\"; it must be a length such as 12.5, 12.5mm or 50%",
+            ),
+            ("<path style='d:url(#d)'/>", "d is \"url(#d)\" in a style; it must be path(\"...\") or none"),
             ("<polygon points='1 2 3'/>", "points: 3 numbers; each point needs two, x and y"),
             ("<polygon points='1 2 a'/>", "points: invalid number at position 5"),
         ] {

@@ -1,29 +1,102 @@
-//! What of an element's style matters for walls: whether it is shown, and whether it is cut.
+//! What of an element's style matters for walls.
 
 use std::cell::Cell;
+use std::rc::Rc;
 
 use roxmltree::{Document, Node};
-use simplecss::{AttributeOperator, Declaration, DeclarationTokenizer, Element, PseudoClass, Rule, StyleSheet};
+use simplecss::{AttributeOperator, Element, PseudoClass};
 
-/// The properties that matter.
-const PROPERTIES: [&str; 5] = ["display", "visibility", "clip-path", "mask", "transform"];
+use super::SVG;
+use super::sheet::{self, Rule, Unread};
 
-/// How an element looks, as far as that matters.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Looks {
-    /// Neither it nor anything in it is shown.
-    pub(super) removed: bool,
-    /// Whether it is shown, if it says so itself.
-    pub(super) visible: Option<bool>,
-    /// It has a clip path or a mask.
-    pub(super) clipped: bool,
-    /// A style sheet moves it.
-    pub(super) moved: bool,
+/// The properties that matter, and whether an attribute of the same name says the same.
+const PROPERTIES: [(&str, bool); 34] = [
+    ("clip-path", true),
+    ("cx", true),
+    ("cy", true),
+    ("d", true),
+    ("display", true),
+    ("fill", true),
+    ("fill-opacity", true),
+    ("fill-rule", true),
+    ("height", true),
+    ("marker", false),
+    ("marker-end", true),
+    ("marker-mid", true),
+    ("marker-start", true),
+    ("mask", true),
+    ("offset", false),
+    ("offset-path", false),
+    ("opacity", true),
+    ("overflow", true),
+    ("r", true),
+    ("rotate", false),
+    ("rx", true),
+    ("ry", true),
+    ("scale", false),
+    ("stroke", true),
+    ("stroke-opacity", true),
+    ("stroke-width", true),
+    ("transform", true),
+    ("transform-box", true),
+    ("transform-origin", true),
+    ("translate", false),
+    ("visibility", true),
+    ("width", true),
+    ("x", true),
+    ("y", true),
+];
+
+/// The property of this name, in any case, if it matters.
+pub(super) fn property(name: &str) -> Option<&'static str> {
+    PROPERTIES.iter().map(|p| p.0).find(|p| p.eq_ignore_ascii_case(name))
+}
+
+/// What a property is to be, and whether a style says so or an attribute: they are written differently.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Value<'a> {
+    pub(super) text: &'a str,
+    pub(super) css: bool,
+}
+
+impl Value<'_> {
+    /// Whether it is one of these words, in any case.
+    pub(super) fn is(&self, words: &[&str]) -> bool {
+        words.iter().any(|word| self.text.eq_ignore_ascii_case(word))
+    }
+}
+
+/// An element's own style, as far as it matters.
+#[derive(Debug, Default)]
+pub(super) struct Style<'a>(Vec<(&'static str, Value<'a>)>);
+
+impl<'a> Style<'a> {
+    /// What the element says of a property itself: `None` if nothing, or that it is what it is anyway.
+    pub(super) fn get(&self, name: &str) -> Option<Value<'a>> {
+        let value = self.0.iter().find(|v| v.0 == name)?.1;
+        (!value.is(&["initial", "unset", "revert", "revert-layer"])).then_some(value)
+    }
+
+    /// The word for a property, in small letters; none if nothing is said.
+    pub(super) fn word(&self, name: &str) -> String {
+        self.get(name).map(|value| value.text.to_ascii_lowercase()).unwrap_or_default()
+    }
+
+    fn set(&mut self, property: &'static str, value: Value<'a>) {
+        match self.0.iter_mut().find(|v| v.0 == property) {
+            Some(old) => old.1 = value,
+            None => self.0.push((property, value)),
+        }
+        if property == "marker" {
+            ["marker-start", "marker-mid", "marker-end"].into_iter().for_each(|marker| self.set(marker, value));
+        }
+    }
 }
 
 /// The rules of all style sheets in a document that say anything that matters, the more specific ones last.
 pub(super) struct Styles<'a> {
     rules: Vec<Rule<'a>>,
+    pub(super) unread: Unread,
     /// How many looks at elements are left for finding out which rules match.
     left: Cell<u64>,
 }
@@ -31,26 +104,30 @@ pub(super) struct Styles<'a> {
 /// How many looks at elements there may be: some seconds.
 const LOOKS_MAX: u64 = 1 << 26;
 
-/// How many bytes of text are passed over in the time of a look.
+/// How many bytes of an attribute are compared in the time of a look.
 const BYTES_A_LOOK: usize = 64;
 
 impl<'a> Styles<'a> {
     pub(super) fn of(document: &'a Document<'_>) -> Self {
-        let mut sheet = StyleSheet::new();
-        let left = Cell::new(LOOKS_MAX);
-        for node in document.descendants().filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "style"))) {
-            for text in node.children().filter_map(|n| n.text()) {
-                charge(&left, reading(text));
-                if left.get() == 0 {
-                    break;
+        let mut styles = Styles { rules: Vec::new(), unread: Unread::default(), left: Cell::new(LOOKS_MAX) };
+        // Drawings without a namespace have style sheets too.
+        let of_svg = |node: &Node<'_, '_>| matches!(node.tag_name().namespace(), None | Some(SVG));
+        for node in document.descendants().filter(|n| n.tag_name().name() == "style" && of_svg(n)) {
+            match node.attribute("media").map(str::trim) {
+                None | Some("" | "all" | "screen") => {
+                    let texts = node.children().filter_map(|n| n.text());
+                    texts.for_each(|text| sheet::parse(text, &mut styles.rules, &mut styles.unread));
                 }
-                sheet.parse_more(text);
-                // All rules are sorted again.
-                charge(&left, sheet.rules.len());
+                Some(media) => styles.unread.add(&format!("media=\"{media}\"")),
             }
         }
-        sheet.rules.retain(|rule| rule.declarations.iter().any(|d| PROPERTIES.contains(&d.name)));
-        Styles { rules: sheet.rules, left }
+        for instruction in document.root().children().filter_map(|node| node.pi()) {
+            if instruction.target == "xml-stylesheet" {
+                styles.unread.add("xml-stylesheet");
+            }
+        }
+        styles.rules.sort_by_cached_key(|rule| rule.selector.specificity());
+        styles
     }
 
     /// Whether there was more to look at than may be; what was said of elements then is of no use.
@@ -58,59 +135,25 @@ impl<'a> Styles<'a> {
         self.left.get() == 0
     }
 
-    pub(super) fn looks(&self, node: Node<'_, '_>) -> Looks {
-        let mut looks = Looks::default();
-        for name in ["display", "visibility", "clip-path", "mask"] {
-            if let Some(value) = node.attribute(name) {
-                looks.set(name, value);
+    /// An element's own style: its attributes, the rules that match it, and its attribute `style`.
+    pub(super) fn of_element(&self, node: Node<'a, '_>) -> Style<'a> {
+        let mut style = Style::default();
+        for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
+            if let Some((name, _)) = PROPERTIES.iter().find(|(name, presents)| *presents && *name == attribute.name()) {
+                style.set(name, Value { text: attribute.value().trim(), css: false });
             }
         }
-        let matching: Vec<&Declaration<'_>> = self
-            .rules
-            .iter()
-            .filter(|rule| rule.selector.matches(&Styled(node, &self.left)))
-            .flat_map(|rule| &rule.declarations)
-            .collect();
-        let inline = node.attribute("style").unwrap_or_default();
-        charge(&self.left, reading(inline));
-        let inline = if self.is_spent() { "" } else { inline };
-        let inline: Vec<Declaration<'_>> = DeclarationTokenizer::from(inline).collect();
+        let matching = self.rules.iter().filter(|rule| rule.selector.matches(&Styled(node, &self.left)));
+        let matching: Vec<_> = matching.map(|rule| Rc::clone(&rule.declarations)).collect();
+        let inline: Vec<_> = sheet::declarations(node.attribute("style").unwrap_or_default()).collect();
         // What is important comes last and so wins.
         for important in [false, true] {
-            for d in matching.iter().copied().chain(&inline).filter(|d| d.important == important) {
-                looks.set(d.name, d.value);
+            let all = matching.iter().flat_map(|declarations| declarations.iter()).chain(&inline);
+            for d in all.filter(|d| d.important == important) {
+                style.set(d.property, Value { text: d.value, css: true });
             }
         }
-        looks
-    }
-}
-
-/// Takes that many looks from those that are left.
-fn charge(left: &Cell<u64>, looks: usize) {
-    left.set(left.get().saturating_sub(looks as u64));
-}
-
-/// What reading declarations costs, in looks: with each, the parser goes through the text from its start.
-fn reading(text: &str) -> usize {
-    text.len().saturating_mul(text.bytes().filter(|&b| b == b':').count()) / BYTES_A_LOOK
-}
-
-impl Looks {
-    fn set(&mut self, name: &str, value: &str) {
-        let none = value.trim() == "none";
-        match name {
-            "display" => self.removed = none,
-            "visibility" => {
-                self.visible = match value.trim() {
-                    "visible" => Some(true),
-                    "hidden" | "collapse" => Some(false),
-                    _ => None,
-                }
-            }
-            "clip-path" | "mask" => self.clipped |= !none,
-            "transform" => self.moved = !none,
-            _ => {}
-        }
+        style
     }
 }
 
@@ -120,8 +163,12 @@ struct Styled<'a, 'i, 'l>(Node<'a, 'i>, &'l Cell<u64>);
 impl Styled<'_, '_, '_> {
     /// Counts a look; once none is left, nothing is found any more.
     fn may_look(&self) -> bool {
-        charge(self.1, 1);
+        self.charge(1);
         self.1.get() > 0
+    }
+
+    fn charge(&self, looks: usize) {
+        self.1.set(self.1.get().saturating_sub(looks as u64));
     }
 }
 
@@ -143,7 +190,7 @@ impl Element for Styled<'_, '_, '_> {
             return false;
         }
         let Some(value) = self.0.attribute(local_name) else { return false };
-        charge(self.1, value.len() / BYTES_A_LOOK);
+        self.charge(value.len() / BYTES_A_LOOK);
         operator.matches(value)
     }
 
@@ -158,37 +205,39 @@ mod tests {
 
     #[test]
     fn the_cascade_decides() {
-        let text = r##"<svg xmlns="http://www.w3.org/2000/svg">
+        let text = r##"<svg>
             <style>.off { display: none } #on { display: inline } g > .pale { visibility: hidden; fill: red }
                 .cut { clip-path: url(#c) } .firm { display: none !important } .moved { transform: rotate(3deg) }</style>
-            <a class="off"/><b class="off" id="on"/><c class="off" style="fill:red;display:inline"/>
+            <style media="print">e { display: none }</style>
+            <a class="off"/><b class="off" id="on"/><c class="off" style="fill:red;DISPLAY:inline"/>
             <g><d class="pale x"/></g><e class="cut"/><f class="firm" style="display:inline"/>
             <h display="none"/><i display="none" style="display:block"/><j style="visibility:visible" mask="none"/>
-            <k mask="url(#m)"/><l class="moved"/><m style="visibility:inherit" class="pale"/></svg>"##;
+            <l class="moved" transform="scale(2)"/><m style="marker:none" marker-end="url(#m)"/><n style="r:unset" r="1"/></svg>"##;
         let document = Document::parse(text).unwrap();
         let styles = Styles::of(&document);
-        let looks = |name: &str| {
+        let said = |name: &str| {
             let node = document.descendants().find(|n| n.tag_name().name() == name).unwrap();
-            styles.looks(node)
+            let style = styles.of_element(node);
+            let properties = PROPERTIES.iter().filter_map(|p| Some(format!("{}={}", p.0, style.get(p.0)?.text)));
+            properties.collect::<Vec<_>>().join(" ")
         };
-        let plain = Looks::default();
-        let removed = Looks { removed: true, ..plain };
         for (name, expected) in [
-            ("a", removed),
-            ("b", plain),
-            ("c", plain),
-            ("d", Looks { visible: Some(false), ..plain }),
-            ("e", Looks { clipped: true, ..plain }),
-            ("f", removed),
-            ("h", removed),
-            ("i", plain),
-            ("j", Looks { visible: Some(true), ..plain }),
-            ("k", Looks { clipped: true, ..plain }),
-            ("l", Looks { moved: true, ..plain }),
-            ("m", plain),
+            ("a", "display=none"),
+            ("b", "display=inline"),
+            ("c", "display=inline fill=red"),
+            ("d", "fill=red visibility=hidden"),
+            ("e", "clip-path=url(#c)"),
+            ("f", "display=none"),
+            ("h", "display=none"),
+            ("i", "display=block"),
+            ("j", "mask=none visibility=visible"),
+            ("l", "transform=rotate(3deg)"),
+            ("m", "marker=none marker-end=none marker-mid=none marker-start=none"),
+            ("n", ""),
         ] {
-            assert_eq!(looks(name), expected, "{name}");
+            assert_eq!(said(name), expected, "{name}");
         }
+        assert!(styles.unread.note().unwrap().ends_with("1 (media=\"print\")"));
     }
 
     #[test]
@@ -204,10 +253,6 @@ mod tests {
         // Which of its ancestors are meant by each of eight names can be tried in very many ways.
         let deep = format!("{}<path d=''/>{}", "<g>".repeat(100), "</g>".repeat(100));
         assert!(spent("a g g g g g g g g path {display:none}", &deep));
-        // All rules are sorted again with each sheet, and all declarations read again with each.
-        assert!(spent(&format!("</style>{}<style>", "<style>a{display:none}</style>".repeat(20_000)), ""));
-        assert!(spent(&format!("a{{{}}}", "b:c;".repeat(100_000)), ""));
-        assert!(spent("", &format!("<g style=\"{}\"/>", "b:c;".repeat(100_000))));
         let class = format!("<g class=\"{}\"/>", "x ".repeat(1_000_000));
         assert!(!spent(&rules(500), &class) && spent(&rules(5000), &class));
     }

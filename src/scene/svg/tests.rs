@@ -2,12 +2,12 @@
 
 use super::*;
 
-fn scene(inside: &str) -> Result<Scene, String> {
+pub(super) fn scene(inside: &str) -> Result<Scene, String> {
     let start = format!("<svg xmlns='{SVG}' xmlns:xlink='{XLINK}' xmlns:inkscape='{INKSCAPE}' viewBox='0 0 100 50'>\n");
     parse(&format!("{start}{inside}</svg>"), Some(0.1)).map_err(|fault| format!("{}: {}", fault.place, fault.what))
 }
 
-fn walls(inside: &str) -> Vec<[f64; 4]> {
+pub(super) fn walls(inside: &str) -> Vec<[f64; 4]> {
     let scene = scene(inside).unwrap_or_else(|what| panic!("{inside}: {what}"));
     (0..scene.walls().len()).map(|w| scene.ends(w)).map(|[a, b]| [a.x, a.y, b.x, b.y]).collect()
 }
@@ -110,7 +110,6 @@ fn faults_name_line_and_element() {
         ("<path d='M1e-200,0h1'/>", "line 2: <path>: d: 1e-200 is too small for exact products"),
         ("<g transform='scale(1e200)'><path d='M9,0h1'/></g>", "line 2: <path>: d: 9e200 is too large"),
         ("<g transform='turn(9)'/>", "line 2: <g>: transform: "),
-        ("<g style='transform: rotate(9deg)'/>", "line 2: <g>: moved by a style"),
         ("<use id='u'/>", "line 2: <use id=\"u\">: names nothing to use; it needs href=\"#id\""),
         ("<use href='a.svg#b'/>", "line 2: <use>: uses \"a.svg#b\" of another file"),
         ("<use href='#b'/>", "line 2: <use>: uses the element \"b\", which the file does not have"),

@@ -1,9 +1,35 @@
 //! What places an element: its transform and its viewport.
 
-use glam::{DAffine2, DVec2};
+use glam::{DAffine2, DMat2, DVec2};
 use svgtypes::{Align, AspectRatio, TransformListParser, TransformListToken, ViewBox};
 
 use super::super::curves::direction;
+use super::super::excerpt;
+use super::css_transform;
+use super::style::Style;
+
+/// How an element's own coordinates lie in those of what is round it.
+pub(super) fn own(style: &Style<'_>, viewport: Option<DVec2>) -> Result<DAffine2, String> {
+    let said = |name: &str| style.get(name).filter(|value| !value.is(&["none"]));
+    if let Some((name, value)) = ["offset", "offset-path"].into_iter().find_map(|name| Some((name, said(name)?))) {
+        return Err(format!("moved by the style {name}: {:?}; write the attribute transform", excerpt(value.text)));
+    }
+    let mut all = DAffine2::IDENTITY;
+    for name in ["translate", "rotate", "scale", "transform"] {
+        if let Some(value) = said(name) {
+            all *=
+                if value.css { css_transform::property(name, value.text, viewport)? } else { transform(value.text)? };
+        }
+    }
+    let turned = all.matrix2 != DMat2::IDENTITY;
+    match style.get("transform-origin").filter(|_| turned) {
+        Some(origin) => {
+            let origin = css_transform::origin(origin, &style.word("transform-box"), viewport)?;
+            Ok(DAffine2::from_translation(origin) * all * DAffine2::from_translation(-origin))
+        }
+        None => Ok(all),
+    }
+}
 
 /// The transform that the attribute `transform` describes.
 pub(super) fn transform(text: &str) -> Result<DAffine2, String> {

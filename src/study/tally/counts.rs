@@ -22,7 +22,7 @@ pub(crate) struct Traced<'a> {
 /// How often ropes go about an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Wound {
-    /// How many ropes go about it counter-clockwise, and clockwise.
+    /// How many ropes go about it counter-clockwise, and clockwise: both, like the turns, as if y pointed upwards.
     pub left: u64,
     pub right: u64,
     /// The sum of the turns and of their squares.
@@ -59,6 +59,9 @@ pub(crate) struct Counts {
     pub events: u64,
     /// How many steps the longest trace has.
     pub longest_trace: u64,
+    /// How many steps left the free end where it was, and how many met a wall or the border as they were drawn first.
+    pub still: u64,
+    pub met: u64,
     /// How many longer steps of thinned traces were walked point by point.
     pub jumps: u64,
     /// How many traces cross a simplified wall, and how many steps.
@@ -103,6 +106,8 @@ impl Counts {
             }
             looks += record.steps + 1;
             counts.longest_trace = counts.longest_trace.max(record.steps);
+            counts.still += trace.walked().still as u64;
+            counts.met += trace.walked().met as u64;
             counts.jumps += trace.jumps() as u64;
             counts.crossing[0] += u64::from(trace.crossings() > 0);
             counts.crossing[1] += trace.crossings() as u64;
@@ -197,6 +202,8 @@ impl Counts {
             looks,
             events,
             longest_trace,
+            still,
+            met,
             jumps,
             crossing,
             bins,
@@ -212,6 +219,8 @@ impl Counts {
         self.looks.merge(&looks);
         self.events += events;
         self.longest_trace = self.longest_trace.max(longest_trace);
+        self.still += still;
+        self.met += met;
         self.jumps += jumps;
         self.crossing.iter_mut().zip(crossing).for_each(|(to, from)| *to += from);
         self.bins.iter_mut().zip(bins).for_each(|(to, from)| add(to, from));

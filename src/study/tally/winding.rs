@@ -13,8 +13,8 @@ pub(crate) struct Obstacle {
     /// The lowest number among its wall ends.
     pub vertex: u32,
     pub walls: u32,
-    /// A point on it from which turns are counted: the middle of a wall.
-    middle: DVec2,
+    /// The point about which the ropes' turns are counted: the middle of its first wall.
+    pub middle: DVec2,
 }
 
 /// The obstacles of a scene, from left to right.

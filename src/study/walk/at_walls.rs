@@ -11,10 +11,10 @@ use crate::study::AtWalls;
 use crate::study::random::Random;
 
 /// How often a step is drawn again before the free end stays where it is.
-const TRIES: u32 = 32;
+pub(super) const TRIES: u32 = 32;
 
 /// How often a step is thrown back, as in a corner, before the free end stays where it is.
-const MIRRORS: u32 = 8;
+pub(super) const MIRRORS: u32 = 8;
 
 /// Where the free end is after a step from `here` that could not be taken to `next`, as it was drawn.
 #[cold]

@@ -23,8 +23,9 @@ use self::uniform::Uniform;
 use self::waypoints::Waypoints;
 use super::random::{Purpose, Random};
 use super::{AtWalls, PlanError, WalkPlan};
+use crate::geometry::number;
 use crate::scene::Model;
-use crate::trace::{SettledTrace, Trace, settle_clear, settle_owned};
+use crate::trace::{SettledTrace, Trace, Walked, settle_clear, settle_owned};
 
 /// Random traces in a model's scene. Trace n of a seed is the same on every machine, whatever else is drawn.
 ///
@@ -66,7 +67,7 @@ impl Walks {
     ///
     /// # Errors
     ///
-    /// A step that is not finite and above 0, steps that are none or more than a trace can have, a turn outside of 0 to pi, a
+    /// A step that is not finite and above 0 or is wider than the scene, steps that are none or more than a trace can have, a turn outside of 0 to pi, a
     /// scene without room, coordinates that cannot be triangulated where that is needed; and given traces, which are not
     /// drawn.
     pub fn new(model: Arc<Model>, plan: &WalkPlan, seed: u64) -> Result<Walks, PlanError> {
@@ -89,6 +90,15 @@ impl Walks {
                  move the anchor off the line on which they lie",
             ));
         }
+        let size = room.high - room.low;
+        if let Some(step) = plan.step().filter(|&step| step > size.max_element()) {
+            return Err(PlanError::new(format!(
+                "walk.step: a step of {} is wider than the scene, which is {} by {}; give a shorter one, in the scene's unit",
+                number(step),
+                number(size.x),
+                number(size.y)
+            )));
+        }
         let kind = match *plan {
             WalkPlan::Uniform { step, at_walls, .. } => Kind::Uniform { step, at_walls },
             WalkPlan::Gaussian { step, at_walls, .. } => Kind::Gaussian { step, at_walls },
@@ -102,19 +112,21 @@ impl Walks {
 
     /// Trace `number`, ready to be evaluated. O(steps) where walls are far, and what [`Model::is_clear`] costs near them.
     pub fn trace(&self, number: u64) -> SettledTrace {
-        let walk = self.walk(number);
-        match self.kind {
+        let (walk, met) = self.walk(number);
+        let settled = match self.kind {
             Kind::Waypoints(_) => settle_owned(&self.room.model, walk),
             _ => settle_clear(&self.room.model, walk),
-        }
+        };
+        let still = settled.still();
+        settled.with_walked(Walked { still, met })
     }
 
-    /// The same, as it is drawn.
-    fn walk(&self, number: u64) -> Trace {
+    /// The same, as it is drawn, and how many of its steps met a wall or the border as they were drawn first.
+    fn walk(&self, number: u64) -> (Trace, usize) {
         let model = &self.room.model;
         let start = self.starts.draw(model, &mut Random::new(self.seed, Purpose::Start, number));
         let mut random = Random::new(self.seed, Purpose::Walk, number);
-        let points = match self.kind {
+        let (points, met) = match self.kind {
             Kind::Uniform { step, at_walls } => {
                 self.room.walk(at_walls, start.at(model), self.steps, Uniform { step }, &mut random)
             }
@@ -127,10 +139,10 @@ impl Walks {
             }
             Kind::Waypoints(ref waypoints) => {
                 let mut goals = Random::new(self.seed, Purpose::Goal, number);
-                waypoints.drive(model, start, self.steps, &mut goals)
+                (waypoints.drive(model, start, self.steps, &mut goals), 0)
             }
         };
-        Trace { id: number, points }
+        (Trace { id: number, points }, met)
     }
 }
 

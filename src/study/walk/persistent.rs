@@ -10,14 +10,14 @@ use crate::study::random::Random;
 
 /// The least by which the heading may turn, in radians, once a step was drawn in vain: one that never turns would stand
 /// before a wall for good.
-const LEAST: f64 = 0.1;
+pub(super) const LEAST: f64 = 0.1;
 
 /// How many turns are drawn at once, so that several are made in one instruction. What a step that meets a wall draws depends
 /// on it, and so do all traces.
-const AHEAD: usize = 16;
+pub(super) const AHEAD: usize = 16;
 
 /// By what the turn widens with each step drawn in vain.
-const WIDENS: f64 = 1.5;
+pub(super) const WIDENS: f64 = 1.5;
 
 pub(super) struct Persistent {
     step: f64,

@@ -29,7 +29,8 @@ pub(super) trait Stride {
 }
 
 impl Room {
-    /// The points of a walk of `steps` steps from `start`, in memory with room for one more.
+    /// The points of a walk of `steps` steps from `start`, in memory with room for one more, and how many of the steps met a
+    /// wall or the border as they were drawn first.
     pub(super) fn walk(
         &self,
         at_walls: AtWalls,
@@ -37,9 +38,10 @@ impl Room {
         steps: u32,
         mut stride: impl Stride,
         random: &mut Random,
-    ) -> Vec<DVec2> {
+    ) -> (Vec<DVec2>, usize) {
         let mut points = Vec::with_capacity(steps as usize + 2);
         points.push(start);
+        let mut met = 0;
         let (mut here, mut clearing) = (start, Clearing::default());
         for _ in 0..steps {
             let next = point(here + stride.draw(random));
@@ -51,12 +53,13 @@ impl Room {
                     stride.take();
                     here = next;
                 } else {
+                    met += 1;
                     here = at_walls::meet(self, at_walls, here, next, &mut stride, random);
                 }
                 clearing.move_to(self, here, stride.length());
             }
             points.push(here);
         }
-        points
+        (points, met)
     }
 }

@@ -77,7 +77,8 @@ fn walks_touch_no_wall_and_stay_in_the_box() {
                         assert!(pair[1].cmpge(low).all() && pair[1].cmple(high).all(), "{plan:?}: {pair:?}");
                     }
                     // What is known of it without a look at the walls is what the look says.
-                    assert_eq!(trace, settle(&model, &Trace { id: number, points }), "{plan:?}");
+                    let again = settle(&model, &Trace { id: number, points });
+                    assert_eq!(trace, again.with_walked(trace.walked()), "{plan:?}");
                     let far = way.iter().map(|p| p.distance(way[1])).fold(0.0, f64::max);
                     assert!(far > 2.0 * step, "{plan:?}, trace {number} stays within {far}");
                 }
@@ -247,5 +248,41 @@ fn traces_are_those_of_other_versions() {
             }
         }
         assert_eq!(&hasher.finalize().to_hex()[..16], known, "{plan:?}");
+    }
+}
+
+/// Other programs draw the same walks by what the page says.
+#[test]
+fn the_page_has_the_constants_of_the_code() {
+    use crate::study::{free_space, random};
+    let page = include_str!("../../../docs/studies.md");
+    let constants = [
+        ("random blocks made together", random::BLOCKS.to_string()),
+        ("stream of steps", (Purpose::Walk as u8).to_string()),
+        ("stream of starts", (Purpose::Start as u8).to_string()),
+        ("stream of anchors", (Purpose::Anchor as u8).to_string()),
+        ("stream of goals", (Purpose::Goal as u8).to_string()),
+        ("turns drawn together", persistent::AHEAD.to_string()),
+        ("draws of a step that meets a wall", at_walls::TRIES.to_string()),
+        ("least turn once drawn again", persistent::LEAST.to_string()),
+        ("widening of the turn", persistent::WIDENS.to_string()),
+        ("looks for a mirror", at_walls::MIRRORS.to_string()),
+        ("goals drawn in vain", waypoints::TRIES.to_string()),
+        ("points drawn in vain", free_space::TRIES.to_string()),
+    ];
+    let start = page.find("| constant | value |").expect("a table of constants");
+    let rows: Vec<&str> = page[start..].lines().skip(2).take_while(|line| line.starts_with('|')).collect();
+    let expected: Vec<String> = constants.iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
+    assert_eq!(rows, expected);
+    // And what the text says of them.
+    for phrase in [
+        format!("drawn again up to {} times", at_walls::TRIES),
+        format!("{} times the wider", persistent::WIDENS),
+        format!("Up to {} times", at_walls::MIRRORS),
+        format!("{} angles at once", persistent::AHEAD),
+        format!("{} blocks at once", random::BLOCKS),
+    ] {
+        let found = page.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(found.contains(&phrase), "{phrase}");
     }
 }

@@ -16,7 +16,7 @@ use crate::trace::{Trace, first_violation};
 use crate::visibility::Visibility;
 
 /// How many goals are drawn in vain, one after the other, before the free end stays where it is.
-const TRIES: u32 = 64;
+pub(super) const TRIES: u32 = 64;
 
 pub(super) struct Waypoints {
     step: f64,

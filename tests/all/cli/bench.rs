@@ -6,7 +6,7 @@ use super::Folder;
 
 /// Little work, all engines.
 const SMALL: &str =
-    "bench --scene random-40 --step 0.03 --traces 6 --steps 60 --repeats 2 --seconds 0.03 --adapter software";
+    "bench --scene random-40 --step 0.03 --count 6 --steps 60 --repeats 2 --seconds 0.03 --adapter software";
 
 fn results(folder: &Folder, args: &str) -> Vec<Value> {
     let report: Value = serde_json::from_str(&folder.done(&format!("{args} --json")).stdout).unwrap();
@@ -91,7 +91,7 @@ fn what_is_counted_is_what_engines_do() {
 #[test]
 fn the_environment_is_told() {
     let folder = Folder::new();
-    let args = "bench --scene lattice-30 --traces 2 --steps 20 --repeats 1 --seconds 0.01 --seed 9";
+    let args = "bench --scene lattice-30 --count 2 --steps 20 --repeats 1 --seconds 0.01 --seed 9";
     let report =
         |more: &str| -> Value { serde_json::from_str(&folder.done(&format!("{args} --json {more}")).stdout).unwrap() };
     let without = report("--engine cpu --engine note");
@@ -126,7 +126,7 @@ fn people_get_tables() {
 #[test]
 fn sweeps_have_a_row_a_value_and_engine() {
     let folder = Folder::new();
-    let args = "bench --traces 2 --steps 10 --repeats 1 --seconds 0.002 --engine cpu --engine note";
+    let args = "bench --count 2 --steps 10 --repeats 1 --seconds 0.002 --engine cpu --engine note";
     let swept = |sweep: &str, key: &str| -> Vec<f64> {
         let rows = results(&folder, &format!("{args} --sweep {sweep}"));
         let engines: Vec<_> = rows.iter().map(|r| r["engine"].as_str().unwrap()).collect();
@@ -155,7 +155,7 @@ fn sweeps_have_a_row_a_value_and_engine() {
 #[test]
 fn scenes_may_be_files() {
     let folder = Folder::hand_made();
-    let args = "bench --traces 3 --steps 30 --repeats 1 --seconds 0.01 --engine cpu --engine reference";
+    let args = "bench --count 3 --steps 30 --repeats 1 --seconds 0.01 --engine cpu --engine reference";
     let rows = results(&folder, &format!("{args} --scene s.geojson"));
     assert_eq!((&rows[0]["scene"], &rows[0]["n"]), (&json!("s.geojson"), &json!(4)));
     // The anchor and four ends span 6 by 13, and there are two walls.
@@ -182,7 +182,7 @@ fn bad_usage_is_told_with_what_would_do() {
     for step in ["0", "-1", "nan", "inf", "1e-320", "1e30", "x"] {
         folder.refused(2, &format!("bench --step={step}"), &["--step", "a number from 1e-9 to 1e9"]);
     }
-    for option in ["--traces", "--steps", "--repeats", "--window"] {
+    for option in ["--count", "--steps", "--repeats", "--window"] {
         folder.refused(2, &format!("bench {option} 0"), &[option, "0"]);
     }
     folder.refused(2, "bench --engine auto", &["auto", "gpu", "cpu", "funnel", "note", "reference"]);

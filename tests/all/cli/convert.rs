@@ -12,7 +12,7 @@ fn a_drawing_becomes_geojson_and_well_known_text() {
     let done = folder.done("convert --flatten 0.1 p.svg p.geojson");
     assert_eq!(done.stdout, "p.geojson: 16 walls, 16 vertices, anchor (2, 0.1)\n");
     let notes = "note: p.svg: a unit is 1 mm (the drawing is 20 mm wide, its viewBox 20); y points down, as in the file\n\
-        note: p.svg: walls lie within 0.1 of the curves that they stand for (--flatten); curves: 1\n";
+        note: p.svg: walls lie within 0.1 of the curves that they stand for (--flatten), and contacts there depend on it; curves: 1\n";
     assert_eq!(done.stderr, notes);
     assert_eq!(folder.done("convert p.geojson p.wkt").stderr, "");
     assert_eq!(folder.done("convert p.wkt q.json").stdout, "q.json: 16 walls, 16 vertices, anchor (2, 0.1)\n");

@@ -131,7 +131,7 @@ mod unix {
     fn ctrl_c_ends_a_bench() {
         let folder = Folder::new();
         // The reference alone would take minutes.
-        let mut child = start(&folder, "bench --engine reference --seconds 1000 --traces 4000");
+        let mut child = start(&folder, "bench --engine reference --seconds 1000 --count 4000");
         wait_until_it_listens(&mut child);
         interrupt(&child);
         finish(child).has_failed(130, "benching", &["error: stopped; nothing was written"]);

@@ -104,7 +104,8 @@ fn a_grid_map_is_a_scene() {
     folder.write("g.map", "type octile\nheight 3\nwidth 5\nmap\n.....\n..@..\n.....\n");
     // Past the blocked cell's corner (2, 1), which turns the rope by the angle between (3, -4) and (4, -3).
     let result = result(&folder, "--scene g.map --anchor -1,5", "0,-1,0\n0,2,-2\n0,6,-2\n");
-    assert_eq!([&result["wraps"], &result["sides"]], [&json!([[2.0, 1.0]]), &json!(["left"])]);
+    // Rows are counted downwards, so the corner lies right of the rope that goes up past it.
+    assert_eq!([&result["wraps"], &result["sides"]], [&json!([[2.0, 1.0]]), &json!(["right"])]);
     assert_eq!([&result["length"], &result["depth"]], [&json!(10.0), &json!(1)]);
 }
 
@@ -131,7 +132,10 @@ fn a_file_without_traces_gives_files_without_rows() {
     folder.done(&format!("{eval} --out r.jsonl --events e.jsonl --engine gpu --adapter software"));
     assert_eq!((folder.text("r.jsonl"), folder.text("e.jsonl")), (String::new(), String::new()));
     let stdout = folder.done(&format!("{eval} --json")).stdout;
-    assert_eq!(serde_json::from_str::<Value>(&stdout).unwrap()["traces"], 0);
+    let report: Value = serde_json::from_str(&stdout).unwrap();
+    assert_eq!((&report["traces"], &report["length"], &report["max_depth"]), (&json!(0), &Value::Null, &Value::Null));
+    let table = folder.done(eval).stdout;
+    assert!(table.contains("  rope length at the end             n/a         n/a         n/a\n"), "{table}");
 }
 
 #[test]
@@ -159,10 +163,10 @@ fn a_scene_without_walls_has_straight_ropes() {
 }
 
 /// A Parquet file that was read back.
-struct Table(RecordBatch);
+pub(super) struct Table(RecordBatch);
 
 impl Table {
-    fn read(path: &Path) -> Self {
+    pub(super) fn read(path: &Path) -> Self {
         let builder = ParquetRecordBatchReaderBuilder::try_new(File::open(path).unwrap()).unwrap();
         let batches: Vec<_> = builder.build().unwrap().map(Result::unwrap).collect();
         assert_eq!(batches.len(), 1);
@@ -183,6 +187,11 @@ impl Table {
 
     fn text(&self, name: &str) -> Vec<String> {
         strings(self.0.column_by_name(name).unwrap())
+    }
+
+    /// The lists of strings of a column.
+    pub(super) fn lists(&self, name: &str) -> Vec<Vec<String>> {
+        self.0.column_by_name(name).unwrap().as_list::<i32>().iter().map(|row| strings(&row.unwrap())).collect()
     }
 }
 

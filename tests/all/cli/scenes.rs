@@ -67,10 +67,7 @@ fn faults_in_geojson_name_feature_and_position() {
 }
 
 #[test]
-fn anchors_must_be_one_and_off_the_walls() {
-    let wall = second_feature("LineString", "[[-1, 0], [1, 0]]");
-    let inside = ["s.geojson: the anchor (0, 0) lies inside wall 0, from (-1, 0) to (1, 0)", "at a wall's end or off"];
-    refused("s.geojson", &wall, &inside);
+fn a_scene_has_one_anchor() {
     let missing = ["s.geojson: no anchor", "--anchor X,Y", "a Point with the property \"role\": \"anchor\""];
     refused("s.geojson", r#"{"type": "LineString", "coordinates": [[1, 0], [2, 0]]}"#, &missing);
     refused("s.map", "type octile\nheight 1\nwidth 2\nmap\n.@\n", &["s.map: no anchor", "--anchor X,Y"]);
@@ -91,7 +88,6 @@ fn anchors_given_are_checked_too() {
     folder.refused(2, &format!("{EVAL} --anchor nan,0"), &["the anchor", "NaN is not a finite number"]);
     folder.refused(2, &format!("{EVAL} --anchor 0,inf"), &["the anchor", "inf is not a finite number"]);
     folder.refused(2, &format!("{EVAL} --anchor 1e200,0"), &["the anchor", "1e200 is too large"]);
-    folder.refused(2, &format!("{EVAL} --anchor 3,1"), &["(3, 1) lies inside wall 0, from (3, 4) to (3, -4)"]);
 }
 
 #[test]

@@ -116,7 +116,7 @@ fn a_study_killed_at_any_moment_goes_on_and_ends_the_same() {
 #[test]
 fn states_that_are_damaged_or_foreign_are_refused() {
     let folder = study();
-    folder.done("study run s.toml --out a --traces 500");
+    folder.done("study run s.toml --out a --count 500");
     let state = folder.read("a/state.bin");
     let mut flipped = state.clone();
     let middle = state.len() / 2;
@@ -210,7 +210,7 @@ fn rows_are_whole_after_a_stop() {
 #[test]
 fn one_trace_is_replayed() {
     let folder = study();
-    folder.done("study run s.toml --out a --traces 500");
+    folder.done("study run s.toml --out a --count 500");
     let told = folder.done("study replay a --trace 7 --events e.jsonl").stdout;
     assert!(told.starts_with("trace 7: 200 steps, "), "{told}");
     let events = folder.text("e.jsonl").lines().count();
@@ -232,9 +232,9 @@ fn the_precision_belongs_to_a_study() {
     let text = STUDY.replace("traces = 5350", "traces = 500\nprecision = \"fast\"");
     folder.write("f.toml", &text);
     folder.done("study run f.toml --out a --adapter software");
-    folder.done("study run s.toml --traces 500 --precision fast --out b --engine gpu --adapter software");
+    folder.done("study run s.toml --count 500 --precision fast --out b --engine gpu --adapter software");
     folder.done("study run f.toml --precision certified --out c --engine cpu");
-    folder.done("study run s.toml --traces 500 --out d --engine cpu");
+    folder.done("study run s.toml --count 500 --out d --engine cpu");
     let precision = |run: &str| {
         let [answer, cost] = ["summary", "run"].map(|name| json(&folder, &format!("{run}/{name}.json")));
         assert_eq!(answer["study"]["run"]["precision"], cost["precision"]);
@@ -272,8 +272,8 @@ fn given_traces_are_studied_too() {
     let report: Value = serde_json::from_str(&results).unwrap();
     let mean = json(&folder, "a/summary.json")["scalars"][0]["mean"]["value"].as_f64().unwrap();
     assert!((report["length"]["mean"].as_f64().unwrap() - mean).abs() < 1e-9 * mean);
-    folder.refused(2, "study run g.toml --out c --traces 701", &["the file holds 700"]);
-    folder.refused(2, "study run g.toml --out d --traces 9000 --shard 3/4", &["the file holds 700"]);
+    folder.refused(2, "study run g.toml --out c --count 701", &["t.csv: ", "the file holds 700"]);
+    folder.refused(2, "study run g.toml --out d --count 9000 --shard 3/4", &["t.csv: ", "the file holds 700"]);
 }
 
 #[test]
@@ -297,7 +297,7 @@ fn faults_in_a_study_are_named() {
     assert!(told.contains("5350 traces in 22 blocks"), "{told}");
     folder.done("study init new.toml");
     folder.refused(2, "study init new.toml", &["new.toml"]);
-    folder.done("study run new.toml --traces 100 --out b");
+    folder.done("study run new.toml --count 100 --out b");
     assert!(folder.done("study schema").stdout.contains("\"walk\""));
 }
 
@@ -341,5 +341,6 @@ fn studies_that_would_mislead_or_burst_are_refused() {
         assert!(!folder.path("b").exists());
     }
     folder.write("stuck.toml", STUDY.replacen("step = ", "step = 1e9 # ", 1));
-    assert!(folder.done("study run stuck.toml --out c --traces 10").stderr.contains("no step of the walk possible"));
+    folder.refused(2, "study run stuck.toml --out c --count 10", &["walk.step: a step of 1000000000 is wider", " by "]);
+    assert!(!folder.path("c").exists());
 }

@@ -96,8 +96,9 @@ fn steps_through_walls_name_trace_step_and_wall() {
         "--on-violation flag",
     ];
     refused("trace,x,y\n2,0,1\n3,0,0\n3,1,0\n3,5,0\n3,1,0\n", &crosses);
-    let inside = ["t.csv: trace 0, step 1: the move from (1, 0) to (3, 1) ends inside", wall];
-    refused("trace,x,y\n0,1,0\n0,3,1\n", &inside);
+    // To the middle of a wall, which is legal, and away from it on the other side.
+    let across = ["t.csv: trace 0, step 2: the move from (3, 1) to (5, 1) crosses", wall];
+    refused("trace,x,y\n0,1,0\n0,3,1\n0,5,1\n", &across);
     let hidden = ["t.csv: trace 0, step 0: the move from (0, 0) to (5, 1) crosses", wall, "the first from the anchor"];
     refused("trace,x,y\n0,5,1\n0,6,1\n", &hidden);
     // The first of several, by trace.

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::Folder;
 
 /// Little work, all methods.
-const SMALL: &str = "tradeoff --scene lattice-60 --step 0.3 --traces 30 --steps 80 --stride 1,3 --simplify 0.2,1.5 --repeats 2 \
+const SMALL: &str = "tradeoff --scene lattice-60 --step 0.3 --count 30 --steps 80 --stride 1,3 --simplify 0.2,1.5 --repeats 2 \
                      --seconds 0.03 --adapter software";
 
 fn report(folder: &Folder, args: &str) -> Value {
@@ -99,7 +99,7 @@ fn people_get_tables_and_a_diagram() {
         assert!(svg.contains(&format!(">{name}<")), "{name}");
     }
     roxmltree::Document::parse(&svg).unwrap();
-    let few = "tradeoff --traces 3 --steps 20 --repeats 1 --seconds 0.001 --engine cpu";
+    let few = "tradeoff --count 3 --steps 20 --repeats 1 --seconds 0.001 --engine cpu";
     assert!(folder.done(few).stdout.contains("--out FILE draws the diagram"));
     folder.done(&format!("{few} --out d.png"));
     assert!(folder.read("d.png").starts_with(b"\x89PNG"));
@@ -128,7 +128,9 @@ fn traces_may_be_given() {
 #[test]
 fn bad_usage_is_told_with_what_would_do() {
     let folder = Folder::hand_made();
-    folder.refused(2, "tradeoff --traces 0", &["--traces 0", "at least one"]);
+    folder.refused(2, "tradeoff --count 0", &["--count", "0"]);
+    folder.refused(2, "tradeoff --traces 30", &["--traces 30", "--count 30"]);
+    folder.refused(2, "tradeoff --scene s.geojson --traces t.csv --count 5 --engine cpu", &["--count", "as they are"]);
     folder.refused(2, "tradeoff --traces no.csv", &["no.csv"]);
     for stride in ["0", "-2", "1.5", "x", "2,,3"] {
         folder.refused(2, &format!("tradeoff --stride={stride}"), &["--stride", "whole number from 1 to 4294967295"]);

@@ -35,7 +35,7 @@ pub(super) fn read(input: &[u8], folder: &Path) {
 
 /// Whether a study is done in some milliseconds, and reads no files.
 fn is_small(plan: &Plan) -> bool {
-    let steps = plan.walk.steps().map_or(u64::MAX, |steps| plan.run.traces.saturating_mul(steps.into()));
+    let steps = plan.walk.steps().map_or(u64::MAX, |steps| plan.run.count().saturating_mul(steps.into()));
     let anchors = match &plan.scene.anchor {
         Some(AnchorPlan::Several(anchors)) => anchors.len(),
         Some(AnchorPlan::Sampled(sampled)) => sampled.sample as usize,
