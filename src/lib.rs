@@ -32,14 +32,17 @@
 pub mod candidates;
 mod caught;
 pub mod engine;
+pub mod escape;
 pub mod example;
 pub mod fast;
 pub mod geometry;
 pub mod gpu;
+mod number;
 pub mod output;
 pub mod picture;
 pub mod queries;
 mod read_error;
+mod read_file;
 pub mod report;
 pub mod rope;
 pub mod scene;
@@ -48,4 +51,5 @@ pub mod study;
 pub mod trace;
 pub mod visibility;
 
+pub use number::parse_number;
 pub use read_error::{Place, ReadError};

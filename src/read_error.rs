@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::escape::{escaped, escaped_path};
 use crate::geometry::CoordinateFault;
 
 /// Where in a file: numbered parts from the outermost to the innermost, such as `feature 3, ring 0, position 12`.
@@ -50,7 +51,7 @@ impl fmt::Display for Place {
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The operating system refuses.
-    #[error("cannot read {}: {cause}", path.display())]
+    #[error("cannot read {}: {cause}", escaped_path(path))]
     Io {
         /// Which file.
         path: PathBuf,
@@ -59,7 +60,11 @@ pub enum ReadError {
         cause: std::io::Error,
     },
     /// The extension names no format that is read here.
-    #[error("{}: the extension does not name a format; {what} are read from {}", path.display(), extensions.join(", "))]
+    #[error(
+        "{}: the extension does not name a format; {what} are read from {}",
+        escaped_path(path),
+        extensions.join(", ")
+    )]
     Extension {
         /// Which file.
         path: PathBuf,
@@ -69,7 +74,7 @@ pub enum ReadError {
         extensions: &'static [&'static str],
     },
     /// The file holds something that it may not hold.
-    #[error("{}: {place}{}{fault}", path.display(), if place.parts().is_empty() { "" } else { ": " })]
+    #[error("{}: {place}{}{}", escaped_path(path), if place.parts().is_empty() { "" } else { ": " }, escaped(fault))]
     Content {
         /// Which file.
         path: PathBuf,
@@ -115,26 +120,6 @@ pub(crate) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
 }
 
-/// The whole file.
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
-    std::fs::read(path).map_err(|cause| ReadError::io(path, cause))
-}
-
-/// The whole file as text, without a byte order mark.
-pub(crate) fn read_text(path: &Path) -> Result<String, ReadError> {
-    let mut bytes = read_bytes(path)?;
-    if bytes.starts_with(b"\xef\xbb\xbf") {
-        bytes.drain(..3);
-    }
-    String::from_utf8(bytes).map_err(|e| {
-        let good = &e.as_bytes()[..e.utf8_error().valid_up_to()];
-        let line = 1 + good.iter().filter(|&&b| b == b'\n').count();
-        let column = 1 + good.iter().rev().take_while(|&&b| b != b'\n').count();
-        let place = Place::default().then("line", line).then("column", column);
-        Fault::new(place, "not UTF-8; save the file as UTF-8 text").in_file(path)
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -147,23 +132,6 @@ mod tests {
         assert_eq!(shown, "aegean.geojson: feature 3, ring 0, position 12: NaN is not a finite number");
         let whole = Fault::from(CoordinateFault::NotFinite(f64::INFINITY)).in_file(Path::new("a.map"));
         assert_eq!(whole.to_string(), "a.map: inf is not a finite number");
-    }
-
-    #[test]
-    fn a_missing_file_is_named_with_the_cause() {
-        let e = read_text(Path::new("/nowhere/x.map")).unwrap_err();
-        assert_eq!(e.to_string(), "cannot read /nowhere/x.map: No such file or directory (os error 2)");
-    }
-
-    #[test]
-    fn bytes_that_are_not_utf8_are_placed() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.map");
-        std::fs::write(&path, b"type octile\nhe\xffight").unwrap();
-        let e = read_text(&path).unwrap_err().to_string();
-        assert!(e.ends_with("a.map: line 2, column 3: not UTF-8; save the file as UTF-8 text"), "{e}");
-        std::fs::write(&path, b"\xef\xbb\xbftype").unwrap();
-        assert_eq!(read_text(&path).unwrap(), "type");
     }
 
     #[test]

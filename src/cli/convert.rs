@@ -8,6 +8,7 @@ use tautline::scene::read_scene_with;
 use super::failure::Failure;
 use super::input::{FileArgs, note};
 use super::print;
+use super::summary::place;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -27,12 +28,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     write_scene(&args.to, &scene)?;
     let is_text = args.to.extension().is_some_and(|e| e.eq_ignore_ascii_case("wkt"));
     if is_text && !scene.is_bare() {
-        eprintln!(
+        say!(
             "note: {}: well-known text has no place for labels, layers and what is solid; GeoJSON has",
             args.to.display()
         );
     }
-    let anchor = scene.anchor().map_or("no anchor".to_owned(), |a| format!("anchor ({}, {})", a.x, a.y));
+    let anchor = scene.anchor().map_or("no anchor".to_owned(), |a| format!("anchor {}", place(a)));
     print(&format!(
         "{}: {} walls, {} vertices, {anchor}\n",
         args.to.display(),

@@ -114,7 +114,7 @@ impl EngineArgs {
                     }
                     other => other.to_string(),
                 };
-                eprintln!("engine: cpu, since {why} (`tautline adapters` lists what there is)");
+                say!("engine: cpu, since {why} (`tautline adapters` lists what there is)");
                 self.cpu(model)
             })),
             (EngineName::Cpu, None) => Ok(self.cpu(model)),
@@ -134,10 +134,10 @@ impl EngineArgs {
             (Precision::Fast, false) => Box::new(FastGpu::new(device, model)?.window(self.window())),
             (Precision::Fast, true) => Box::new(FastGpu::new(device, model)?.window(self.window()).keep_all()),
         };
-        eprintln!("engine: gpu on {on}");
-        notes.iter().for_each(|note| eprintln!("{note}"));
+        say!("engine: gpu on {on}");
+        notes.iter().for_each(|note| say!("{note}"));
         if precision == Precision::Fast {
-            eprintln!("note: precision fast: f32 decides alone, so ropes can be wrong");
+            say!("note: precision fast: f32 decides alone, so ropes can be wrong");
         }
         Ok((engine, on))
     }

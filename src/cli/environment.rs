@@ -10,3 +10,16 @@ pub(crate) fn quieten_vulkan() {
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
 }
+
+/// Has a file that would grow beyond the limit of its size (`ulimit -f`) fail to be written, as on a full disk. By default the
+/// process would be killed with its files half written.
+#[cfg(unix)]
+#[allow(unsafe_code)] // signals are ignored in no other way
+pub(crate) fn outlive_size_limits() {
+    // SAFETY: no code runs when an ignored signal comes.
+    unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
+}
+
+/// Elsewhere there is no such signal.
+#[cfg(not(unix))]
+pub(crate) fn outlive_size_limits() {}

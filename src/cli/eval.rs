@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let terms = args.trade.terms(&args.input.name(), args.input.model()?)?;
     let model = &terms.used;
     if model.scene().dropped() > 0 {
-        eprintln!("note: {}", dropped(model.scene().dropped()));
+        say!("note: {}", dropped(model.scene().dropped()));
     }
     let source = args.input.source()?;
     let (mut engine, on) = args.engine.open(model)?;

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use glam::DVec2;
+use tautline::escape::{escaped, escaped_path};
 use tautline::example::{Walker, floor_plan};
+use tautline::parse_number as number;
 use tautline::scene::{AnchorError, Model, Ros, Scene, SceneOptions, Unknown, read_scene_with};
 use tautline::study::anchor_warnings;
 use tautline::trace::TraceReader;
@@ -92,21 +94,21 @@ impl FileArgs {
 
 /// A number above 0.
 pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|&x: &f64| x > 0.0 && x.is_finite());
+    let number = number(text).filter(|&x| x > 0.0 && x.is_finite());
     number.ok_or_else(|| "give a number above 0, such as 0.01".to_owned())
 }
 
 /// Tells what the reader of a scene has to say.
 pub(crate) fn note(path: &Path, scene: &Scene) {
     for note in scene.notes() {
-        eprintln!("note: {}: {note}", path.display());
+        say!("note: {}: {}", escaped_path(path), escaped(note));
     }
 }
 
 /// Warns of an anchor that is hardly where it was meant to be.
 pub(crate) fn warn(name: &str, model: &Model) {
     for warning in anchor_warnings(model) {
-        eprintln!("warning: {name}: {warning}");
+        say!("warning: {name}: {warning}");
     }
 }
 
@@ -114,8 +116,7 @@ pub(crate) fn warn(name: &str, model: &Model) {
 pub(super) fn point(text: &str) -> Result<DVec2, String> {
     let wrong = || "give two numbers with a comma between them, such as 1.5,-2".to_owned();
     let (x, y) = text.split_once(',').ok_or_else(wrong)?;
-    let number = |t: &str| t.trim().parse::<f64>().map_err(|_| wrong());
-    Ok(DVec2::new(number(x)?, number(y)?))
+    Ok(DVec2::new(number(x).ok_or_else(wrong)?, number(y).ok_or_else(wrong)?))
 }
 
 impl InputArgs {

@@ -1,7 +1,6 @@
 //! Ctrl-C, and a request to end: the process ends at once, in good order, whatever it is doing. That is done by the thread that
 //! hears of it, so that nothing has to be asked to stop: what is still at work is cut off.
 
-use std::io::Write;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tautline::output::abandon;
@@ -76,7 +75,7 @@ fn end() {
         None => Failure::interrupted(abandon()),
     };
     // Where the terminal has gone there is nobody to tell.
-    let _ = writeln!(std::io::stderr(), "\nerror: {failure}");
+    say!("\nerror: {failure}");
     leave(failure.number());
 }
 

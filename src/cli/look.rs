@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use glam::DVec2;
-use tautline::output::{WholeFile, WriteError};
+use tautline::output::{WholeFile, WriteError, check_place};
 use tautline::picture::{self, Drawing, Part, PictureError, Theme};
 
 use super::failure::Failure;
@@ -72,7 +72,7 @@ fn part(text: &str) -> Result<Part, String> {
         _ => {}
     }
     let wrong = || "give near, all, or two opposite corners, such as 0,0,4.5,3".to_owned();
-    let numbers: Vec<f64> = text.split(',').map(|t| t.trim().parse()).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let numbers: Vec<f64> = text.split(',').map(tautline::parse_number).collect::<Option<_>>().ok_or_else(wrong)?;
     match numbers[..] {
         [x0, y0, x1, y1] => Ok(Part::Between(DVec2::new(x0, y0), DVec2::new(x1, y1))),
         _ => Err(wrong()),
@@ -96,6 +96,7 @@ pub(crate) struct Target {
 impl Target {
     /// Checks, before anything is computed, that the file can be written and goes with the look. Leaves nothing behind.
     pub(crate) fn new(path: &Path, look: &Look) -> Result<Self, Failure> {
+        check_place(path)?;
         let shown = path.display();
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         let kind = match extension.as_str() {

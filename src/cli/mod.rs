@@ -1,5 +1,8 @@
 //! Parsing and printing. Everything that happens in between is the library's.
 
+#[macro_use]
+mod say;
+
 mod adapters;
 mod batches;
 mod bench;
@@ -26,13 +29,12 @@ mod trade;
 mod tradeoff;
 mod violations;
 
-use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use failure::Failure;
+use say::{print, print_json};
 
 /// Taut ropes of dragged traces among walls, in bulk and exactly, on the GPU.
 #[derive(Debug, Parser)]
@@ -82,8 +84,10 @@ enum Command {
 
 /// Runs the command line and returns the process's exit code.
 pub(crate) fn run() -> ExitCode {
-    // Usage errors end the process with exit code 2 in here, which is what they should.
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(other) => return say::usage(&other),
+    };
     // A panic is a bug of this program; its message is printed by then.
     let outcome = catch_unwind(AssertUnwindSafe(|| {
         interrupt::listen()?;
@@ -103,25 +107,12 @@ pub(crate) fn run() -> ExitCode {
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(failure)) => {
-            eprintln!("error: {failure}");
+            say!("error: {failure}");
             failure.code()
         }
         Err(_) => {
-            eprintln!("error: this is a bug in tautline; please report it with the input that shows it");
+            say!("error: this is a bug in tautline; please report it with the input that shows it");
             ExitCode::from(1)
         }
     }
-}
-
-/// Prints to stdout; a reader that has seen enough (`| head`) is no error.
-fn print(text: &str) -> Result<(), Failure> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::internal(anyhow::anyhow!(e))),
-        _ => Ok(()),
-    }
-}
-
-/// Prints a report as one JSON document.
-fn print_json(report: &serde_json::Value) -> Result<(), Failure> {
-    print(&format!("{report:#}\n"))
 }

@@ -157,7 +157,7 @@ impl Runs {
         if let Some((due, gaps)) = &mut self.lines
             && elapsed >= *due
         {
-            eprintln!("progress: {done} of {all} runs in {}, now {next}", HumanDuration(elapsed));
+            say!("progress: {done} of {all} runs in {}, now {next}", HumanDuration(elapsed));
             *due = elapsed + gaps.next().unwrap_or(elapsed);
         }
         self.bar.set_length(all);

@@ -6,6 +6,7 @@ use std::time::Duration;
 use glam::DVec2;
 use serde_json::{Value, json};
 use tautline::engine::{Engine, Precision};
+use tautline::geometry::number;
 use tautline::rope::{EventKind, TraceRecord};
 use tautline::scene::Model;
 
@@ -90,6 +91,11 @@ pub(super) fn short(x: f64) -> String {
     } else {
         format!("{x:.3e}")
     }
+}
+
+/// A point, with exponents where plain digits would be many.
+pub(super) fn place(point: DVec2) -> String {
+    format!("({}, {})", number(point.x), number(point.y))
 }
 
 /// So many of what one and several are called.
@@ -217,10 +223,10 @@ impl Summary {
     }
 
     pub(crate) fn table(&self, times: &Times, hint: bool) -> String {
-        let [x, y] = self.anchor;
+        let anchor = place(self.anchor.into());
         let events = self.wraps + self.unwraps;
         let mut text = format!(
-            "scene    {}: {} with {} ends{}, anchor ({x}, {y})\n\
+            "scene    {}: {} with {} ends{}, anchor {anchor}\n\
              traces   {}, {}{}\n\
              engine   {} ({}) on {}\n",
             self.scene,

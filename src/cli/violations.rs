@@ -42,7 +42,7 @@ impl Violations {
             }
             (Some(_), OnViolation::Flag) => {
                 let left = SHOWN.saturating_sub(self.found);
-                violations.iter().take(left).for_each(|v| eprintln!("warning: {file}{v}"));
+                violations.iter().take(left).for_each(|v| say!("warning: {file}{v}"));
             }
             (None, _) => {}
         }
@@ -55,7 +55,7 @@ impl Violations {
         if self.found > SHOWN {
             let more = self.found - SHOWN;
             let list = "`tautline check --on-violation flag --json` lists them all";
-            eprintln!("warning: and {more} more traces that cross walls; {list}");
+            say!("warning: and {more} more traces that cross walls; {list}");
         }
         self.found
     }

@@ -68,7 +68,7 @@ pub enum AdvanceError {
         to: DVec2,
     },
     /// The goal is no point to compute with exactly.
-    #[error("the free end cannot move to ({}, {}): {fault}", to.x, to.y)]
+    #[error("the free end cannot move to {}: {fault}", Shown(*to))]
     Coordinate {
         /// Where the move would end.
         to: DVec2,

@@ -13,6 +13,7 @@ mod results;
 mod rows;
 mod scene;
 mod tables;
+mod target;
 mod text;
 mod whole_file;
 mod write_error;
@@ -55,11 +56,21 @@ impl Format {
 ///
 /// # Errors
 ///
-/// An extension that names no format, a folder that does not exist or cannot be written to, and a target that is there
-/// and is no regular file or is read-only.
+/// An extension that names no format, and those of [`WholeFile::create`].
 pub fn check_output(path: &Path) -> Result<(), WriteError> {
+    check_place(path)?;
     Format::of(path)?;
     WholeFile::create(path).map(drop)
+}
+
+/// Whether a file could stand at `path`, whatever it holds: not in the place of a folder, a device, a pipe or an open file such
+/// as `/dev/stdout`. O(1).
+///
+/// # Errors
+///
+/// What stands there.
+pub fn check_place(path: &Path) -> Result<(), WriteError> {
+    target::refuse_special(path)
 }
 
 #[cfg(test)]

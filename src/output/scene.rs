@@ -35,6 +35,7 @@ use crate::scene::{MEMBER, Scene};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn write_scene(path: &Path, scene: &Scene) -> Result<(), WriteError> {
+    super::check_place(path)?;
     let write = match extension(path).as_str() {
         "geojson" | "json" => geojson,
         "wkt" => wkt,

@@ -1,11 +1,12 @@
 //! Files that are whole or not there at all.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::WriteError;
 use super::passing::Passing;
+use super::target::Target;
 
 /// A file under way: it grows under a temporary name in the target's folder and takes the target's name when it is
 /// whole, in [`finish`](Self::finish). Dropped before that, it vanishes and the target is as it was.
@@ -17,36 +18,24 @@ pub struct WholeFile {
     temporary: Passing,
     /// The path as the user gave it, for messages.
     path: PathBuf,
-    /// The path with links followed: a link stays a link.
-    target: PathBuf,
+    target: Target,
     failed: bool,
 }
 
 impl WholeFile {
-    /// Starts the file that is to stand at `path`, in place of what stands there now.
+    /// Starts the file that is to stand at `path`, in place of what stands there now, whose mode and owner it takes over.
     ///
     /// # Errors
     ///
-    /// A folder that does not exist or cannot be written to, and a target that is there and is no regular file or is
-    /// read-only.
+    /// A folder that does not exist or cannot be written to; and what cannot be replaced without a loss: a target that is
+    /// there and is no regular file, is read-only, has several names (hard links), is where standard output or error go, or
+    /// belongs to somebody to whom the new file could not be given.
     pub fn create(path: &Path) -> Result<Self, WriteError> {
-        let target = match fs::metadata(path) {
-            Ok(found) if !found.is_file() => {
-                return Err(WriteError::target(path, "what stands there is not a regular file"));
-            }
-            Ok(found) if found.permissions().readonly() => {
-                return Err(WriteError::target(path, "the file that stands there is read-only"));
-            }
-            Ok(_) => fs::canonicalize(path).map_err(|cause| WriteError::io(path, cause))?,
-            Err(_) if path.is_symlink() => {
-                return Err(WriteError::target(path, "what stands there is a link to nothing"));
-            }
-            Err(_) => path.to_owned(),
-        };
-        let Some(name) = target.file_name() else {
+        let target = Target::at(path)?;
+        let Some(name) = target.path.file_name() else {
             return Err(WriteError::target(path, "the path names no file"));
         };
-        let folder = match target.parent() {
+        let folder = match target.path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
@@ -55,6 +44,7 @@ impl WholeFile {
             return Err(WriteError::target(path, format!("the folder {} {fault}", folder.display())));
         }
         let (file, temporary) = Passing::create(folder, name).map_err(|cause| WriteError::io(path, cause))?;
+        target.hand_over(&file).map_err(|fault| WriteError::target(path, fault))?;
         let out = BufWriter::with_capacity(1 << 16, file);
         Ok(WholeFile { out, temporary, path: path.to_owned(), target, failed: false })
     }
@@ -92,7 +82,7 @@ impl WholeFile {
         then(&file).map_err(|cause| WriteError::io(&path, cause))?;
         // Some systems do not rename open files.
         drop(file);
-        temporary.persist(&target).map_err(|cause| WriteError::io(&path, cause))
+        temporary.persist(&target.path).map_err(|cause| WriteError::io(&path, cause))
     }
 
     /// Puts the path to an error of one of this file's writes.
@@ -130,6 +120,7 @@ impl Write for WholeFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn names(folder: &Path) -> Vec<String> {
         let mut names: Vec<_> =
@@ -172,7 +163,8 @@ mod tests {
         let mut permissions = fs::metadata(at("fixed.csv")).unwrap().permissions();
         permissions.set_readonly(true);
         fs::set_permissions(at("fixed.csv"), permissions).unwrap();
-        refused(&at("folder.csv"), "what stands there is not a regular file".into());
+        let why = "files appear when they are whole, so give the name of one";
+        refused(&at("folder.csv"), format!("what stands there is not a regular file but a folder; {why}"));
         refused(&at("fixed.csv"), "the file that stands there is read-only".into());
         refused(&at("no/a.csv"), format!("the folder {} does not exist", at("no").display()));
         refused(&at("file/a.csv"), format!("the folder {} is not a folder", at("file").display()));
@@ -200,6 +192,73 @@ mod tests {
         assert_eq!(mode("there"), mode("usual"));
         let e = WholeFile::create(&at("lost.csv")).unwrap_err().to_string();
         assert!(e.ends_with("lost.csv: what stands there is a link to nothing"), "{e}");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_a_whole_file_cannot_replace_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let refused = |path: &Path, kind: &str| {
+            let e = WholeFile::create(path).unwrap_err().to_string();
+            let why = "files appear when they are whole, so give the name of one";
+            let what = format!("what stands there is not a regular file but {kind}; {why}");
+            assert_eq!(e, format!("cannot write {}: {what}", path.display()));
+        };
+        assert!(std::process::Command::new("mkfifo").arg(at("pipe.csv")).status().unwrap().success());
+        refused(&at("pipe.csv"), "a pipe");
+        refused(Path::new("/dev/null"), "a device");
+        // Whatever they are, and however one comes to them.
+        fs::write(at("open.csv"), "old").unwrap();
+        let open = File::open(at("open.csv")).unwrap();
+        let number = std::os::fd::AsRawFd::as_raw_fd(&open);
+        for link in ["/dev/stdout", "/proc/self/fd/2", &format!("/dev/fd/{number}")] {
+            refused(Path::new(link), "an open file of this program");
+            let _ = fs::remove_file(at("link.csv"));
+            std::os::unix::fs::symlink(link, at("link.csv")).unwrap();
+            refused(&at("link.csv"), "an open file of this program");
+        }
+        // By its own name it can be replaced.
+        WholeFile::create(&at("open.csv")).unwrap().finish().unwrap();
+        assert_eq!(names(folder.path()), ["link.csv", "open.csv", "pipe.csv"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_of_several_names_is_not_split() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("a.csv"), "old").unwrap();
+        fs::hard_link(at("a.csv"), at("b.csv")).unwrap();
+        let e = WholeFile::create(&at("a.csv")).unwrap_err().to_string();
+        assert!(
+            e.contains("a.csv: the file that stands there has 2 names (hard links), and the others would keep"),
+            "{e}"
+        );
+        fs::remove_file(at("b.csv")).unwrap();
+        WholeFile::create(&at("a.csv")).unwrap().finish().unwrap();
+        assert_eq!(names(folder.path()), ["a.csv"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn mode_and_owner_are_those_of_the_file_before() {
+        use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        fs::write(&path, "old").unwrap();
+        // Only the superuser can give files away.
+        let given = chown(&path, Some(1234), Some(4321)).is_ok();
+        for mode in [0o600, 0o666, 0o4750, 0o640] {
+            fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
+            let mut file = WholeFile::create(&path).unwrap();
+            file.write_all(b"new").unwrap();
+            file.finish().unwrap();
+            let found = fs::metadata(&path).unwrap();
+            assert_eq!(found.mode() & 0o7777, mode);
+            assert!(!given || (found.uid(), found.gid()) == (1234, 4321));
+        }
     }
 
     #[cfg(target_os = "linux")]

@@ -2,26 +2,31 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::escape::{escaped, escaped_path};
+
 /// Why results, events or a scene cannot be written. Whatever stood at the path before still stands there.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The extension names no format that is written here.
     #[error(
         "{}: the extension does not name a format; results and events are written as .jsonl, .csv or .parquet",
-        path.display()
+        escaped_path(path)
     )]
     Extension {
         /// Which file.
         path: PathBuf,
     },
     /// The extension names no format in which scenes are written.
-    #[error("{}: the extension does not name a format; scenes are written as .geojson, .json or .wkt", path.display())]
+    #[error(
+        "{}: the extension does not name a format; scenes are written as .geojson, .json or .wkt",
+        escaped_path(path)
+    )]
     SceneExtension {
         /// Which file.
         path: PathBuf,
     },
     /// A file cannot be put there.
-    #[error("cannot write {}: {fault}", path.display())]
+    #[error("cannot write {}: {}", escaped_path(path), escaped(fault))]
     Target {
         /// Which file.
         path: PathBuf,
@@ -29,7 +34,7 @@ pub enum WriteError {
         fault: String,
     },
     /// A file from which another is made cannot be read.
-    #[error("cannot read {}: {fault}", path.display())]
+    #[error("cannot read {}: {}", escaped_path(path), escaped(fault))]
     Source {
         /// Which file.
         path: PathBuf,
@@ -37,7 +42,7 @@ pub enum WriteError {
         fault: String,
     },
     /// The operating system refuses.
-    #[error("cannot write {}: {cause}", path.display())]
+    #[error("cannot write {}: {cause}", escaped_path(path))]
     Io {
         /// Which file.
         path: PathBuf,

@@ -12,7 +12,8 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use crate::read_error::{Fault, Place, ReadError, read_text};
+use crate::read_error::{Fault, Place, ReadError};
+use crate::read_file::{SCENE_MAX, read_text};
 use crate::scene::GridMap;
 
 pub use drive::{Drive, Driver};
@@ -54,7 +55,7 @@ fn middle([column, row]: [usize; 2]) -> DVec2 {
 /// A file that cannot be opened; with its line, a row that is none, one for a map of another size, one of which the start
 /// or the goal is blocked or outside of the map. A file without queries.
 pub fn read_queries(path: &Path, map: &GridMap) -> Result<Vec<Query>, ReadError> {
-    parse(&read_text(path)?, map).map_err(|fault| fault.in_file(path))
+    parse(&read_text(path, SCENE_MAX)?, map).map_err(|fault| fault.in_file(path))
 }
 
 fn parse(text: &str, map: &GridMap) -> Result<Vec<Query>, Fault> {

@@ -11,6 +11,7 @@ use super::extent::extent;
 use super::flattened::Flattened;
 use super::pen::Pen;
 use super::{Object, Wall};
+use crate::geometry::number;
 
 /// Without a tolerance, walls lie within the drawing's longer side divided by this, to three digits, of their curves.
 const PARTS_OF_SIDE: f64 = 2000.0;
@@ -176,7 +177,8 @@ impl Outlines {
                     curves += 1;
                     curved += n;
                     if curved > WALLS_MAX {
-                        let what = format!("within {tolerance} of its curves, the drawing would have more than");
+                        let what =
+                            format!("within {} of its curves, the drawing would have more than", number(tolerance));
                         return Err(format!("{what} {WALLS_MAX} walls; give a larger tolerance (--flatten)"));
                     }
                     for k in 1..n as u32 {

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{Inside, Object, Wall};
-use crate::geometry::{between, orient};
+use crate::geometry::{between, number, orient};
 
 /// Objects and walls of a drawing.
 pub(super) struct Flattened {
@@ -20,8 +20,9 @@ impl Flattened {
         let Flattened { curves, tolerance, .. } = self;
         (*curves > 0).then(|| {
             format!(
-                "walls lie within {tolerance} of the curves that they stand for (--flatten), and contacts there depend on it; \
-                 curves: {curves}"
+                "walls lie within {} of the curves that they stand for (--flatten), and contacts there depend on it; \
+                 curves: {curves}",
+                number(*tolerance)
             )
         })
     }

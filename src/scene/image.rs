@@ -5,7 +5,8 @@ use std::path::Path;
 
 use super::cells::SIDE_MAX;
 use super::excerpt;
-use crate::read_error::{Fault, Place, ReadError, read_bytes};
+use crate::read_error::{Fault, Place, ReadError};
+use crate::read_file::{SCENE_MAX, read_bytes};
 
 /// How many pixels an image may have: an eighth of that are the bytes that it takes.
 const PIXELS_MAX: usize = 1 << 28;
@@ -44,7 +45,7 @@ impl Bits {
 
 /// Reads an image and asks of each of its pixels whether it is set.
 pub(super) fn read(path: &Path, set: impl FnMut(Pixel) -> bool) -> Result<Bits, ReadError> {
-    parse(&read_bytes(path)?, set).map_err(|fault| fault.in_file(path))
+    parse(&read_bytes(path, SCENE_MAX)?, set).map_err(|fault| fault.in_file(path))
 }
 
 fn parse(bytes: &[u8], set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> {
@@ -79,6 +80,9 @@ fn fill(bits: &mut Bits, from: usize, pixels: impl Iterator<Item = Pixel>, set: 
 fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> {
     let wrong = |e: png::DecodingError| fault(format!("not PNG: {e}"));
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    // Texts and colour profiles are no pixels, and may be far larger than they are in the file.
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(wrong)?;
     let info = reader.info();
@@ -87,8 +91,8 @@ fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
     let (colours, depth) = reader.output_color_type();
     let samples = colours.samples();
     // What is expanded has whole bytes.
-    let bytes = if depth == png::BitDepth::Sixteen { 2 } else { 1 };
-    let pixels = |row: &[u8]| row.chunks_exact(samples * bytes).map(|p| pixel(p, bytes)).collect::<Vec<_>>();
+    let wide = if depth == png::BitDepth::Sixteen { 2 } else { 1 };
+    let pixels = |row: &[u8]| row.chunks_exact(samples * wide).map(|p| pixel(p, wide)).collect::<Vec<_>>();
     let (width, height) = (bits.width, bits.height);
     if interlaced {
         if width * height > INTERLACED_MAX {
@@ -96,7 +100,7 @@ fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
                 "interlaced, with more than {INTERLACED_MAX} pixels; save it without interlacing"
             )));
         }
-        let mut all = vec![0; width * height * samples * bytes];
+        let mut all = vec![0; width * height * samples * wide];
         reader.next_frame(&mut all).map_err(wrong)?;
         fill(&mut bits, 0, pixels(&all).into_iter(), &mut set);
     } else {
@@ -109,7 +113,54 @@ fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
     }
     // What ends before its end may have lost more than that.
     reader.finish().map_err(wrong)?;
+    if inflates_beyond(bytes, raw_size(reader.info())) {
+        return Err(goes_on(width * height));
+    }
     Ok(bits)
+}
+
+/// How many bytes the rows have before they are compressed, with the byte before each that names its filter.
+fn raw_size(info: &png::Info<'_>) -> u64 {
+    let row = |width: u32| 1 + (u64::from(width) * info.bits_per_pixel() as u64).div_ceil(8);
+    if !info.interlaced {
+        return u64::from(info.height) * row(info.width);
+    }
+    // Seven images, each with the first column and row that it has, and the steps to the next ones.
+    let passes = [(0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4), (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2)];
+    let sides = passes.map(|(x, y, dx, dy): (u32, u32, u32, u32)| {
+        [info.width.saturating_sub(x).div_ceil(dx), info.height.saturating_sub(y).div_ceil(dy)]
+    });
+    sides.iter().filter(|side| side[0] > 0).map(|&[width, height]| u64::from(height) * row(width)).sum()
+}
+
+/// Whether the compressed pixels of a sound PNG are more than `size` bytes: the decoder stops there and does not look.
+fn inflates_beyond(bytes: &[u8], size: u64) -> bool {
+    let mut inflate = flate2::Decompress::new(true);
+    let mut out = vec![0; 1 << 16];
+    let mut rest = bytes.get(8..).unwrap_or_default();
+    while let Some((&length, tail)) = rest.split_first_chunk::<4>().map(|(length, tail)| (length, tail)) {
+        let length = u32::from_be_bytes(length) as usize;
+        let Some(chunk) = tail.get(4..4 + length) else { return false };
+        if tail.starts_with(b"IDAT") {
+            let mut data = chunk;
+            loop {
+                let before = (inflate.total_in(), inflate.total_out());
+                let status = inflate.decompress(data, &mut out, flate2::FlushDecompress::None);
+                if inflate.total_out() > size {
+                    return true;
+                }
+                data = &data[(inflate.total_in() - before.0) as usize..];
+                match status {
+                    Ok(flate2::Status::Ok | flate2::Status::BufError)
+                        if before != (inflate.total_in(), inflate.total_out()) => {}
+                    Ok(flate2::Status::StreamEnd) | Err(_) => return false,
+                    Ok(_) => break,
+                }
+            }
+        }
+        rest = tail.get(4 + length + 4..).unwrap_or_default();
+    }
+    false
 }
 
 /// A pixel of samples of one or two bytes: grey or red, green and blue, and alpha behind them if there are two or four.
@@ -145,6 +196,7 @@ fn pgm(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
         if data.len() / size < width * height {
             return Err(short(data.len() / size));
         }
+        ends(&data[size * width * height..], width * height)?;
         let mut bits = room(width, height)?;
         let values = data.chunks_exact(size).map(|v| v.iter().fold(0, |sum, &b| sum * 256 + usize::from(b)));
         fill(&mut bits, 0, values.take(width * height).map(shade), &mut set);
@@ -164,7 +216,21 @@ fn pgm(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
             word.parse().map_err(|_| fault(format!("pixel {i} is {:?}; it must be a number", excerpt(word))))?;
         fill(&mut bits, i, std::iter::once(shade(value)), &mut set);
     }
+    let rest = word(bytes, &mut at);
+    ends(rest.as_bytes(), width * height)?;
     Ok(bits)
+}
+
+/// Refuses what comes after the last pixel but white space: the header's sides are not those of the image, then.
+fn ends(rest: &[u8], pixels: usize) -> Result<(), Fault> {
+    match rest.trim_ascii() {
+        [] => Ok(()),
+        _ => Err(goes_on(pixels)),
+    }
+}
+
+fn goes_on(pixels: usize) -> Fault {
+    fault(format!("the image goes on after the {pixels} pixels that its header says"))
 }
 
 fn header(word: &str) -> Fault {
@@ -259,6 +325,10 @@ mod tests {
         }
         assert_eq!(fault(b"P5 3 1 255\n\x00\xcd"), "the image ends after 2 of 3 pixels");
         assert_eq!(fault(b"P2 3 1 255\n0 205 "), "the image ends after 2 of 3 pixels");
+        assert_eq!(pixels(b"P5 1 1 255\n\0\n").unwrap().1, pixels(b"P2 1 1 255 0 # all\n").unwrap().1);
+        for more in [&b"P5 3 1 255\n\0\0\0\0"[..], b"P5 1 3 65535 \0\0\0\0\0\0 P5", b"P2 3 1 255\n0 205 255 0"] {
+            assert_eq!(fault(more), "the image goes on after the 3 pixels that its header says");
+        }
         assert_eq!(fault(b"P2 2 1 255\n0 -1"), "pixel 1 is \"-1\"; it must be a number");
         assert_eq!(fault(b"BM"), "neither PNG nor PGM; save the image as one of them");
         let mut huge = png_of(png::ColorType::Grayscale, png::BitDepth::Eight, 3, &[0, 205, 255]);
@@ -266,5 +336,44 @@ mod tests {
         assert!(fault(&huge[..cut]).starts_with("not PNG: "));
         huge[16] = 0x3b;
         assert!(!fault(&huge).is_empty());
+    }
+
+    #[test]
+    fn no_more_pixels_are_taken_than_the_header_says() {
+        use png::{BitDepth, ColorType};
+        // The header's height, and then its check sum, are made smaller.
+        let cut = |mut png: Vec<u8>, height: u8| {
+            png[23] = height;
+            let crc =
+                (0..256u32).map(|n| (0..8).fold(n, |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 }));
+            let table: Vec<u32> = crc.collect();
+            let sum = png[12..29].iter().fold(!0u32, |c, &b| table[((c ^ u32::from(b)) & 255) as usize] ^ (c >> 8));
+            png[29..33].copy_from_slice(&(!sum).to_be_bytes());
+            png
+        };
+        let image = |height: u32| {
+            let mut bytes = Vec::new();
+            let mut encoder = png::Encoder::new(&mut bytes, 7, height);
+            encoder.set_color(ColorType::Grayscale);
+            encoder.set_depth(BitDepth::Two);
+            let data = (0..2 * height as u8).collect::<Vec<u8>>();
+            encoder.write_header().unwrap().write_image_data(&data).unwrap();
+            bytes
+        };
+        for height in [1, 2, 9] {
+            assert_eq!(pixels(&image(height)).unwrap().1.len(), 7 * height as usize);
+            assert_eq!(pixels(&cut(image(height), height as u8)).unwrap().1.len(), 7 * height as usize);
+        }
+        let e = pixels(&cut(image(9), 8)).unwrap_err().what;
+        assert_eq!(e, "the image goes on after the 56 pixels that its header says");
+        // Of 8 x 8 pixels the seven images have 1, 1, 1, 2, 2, 4 and 4 rows.
+        let size = |width: u32, height: u32| {
+            let mut info = png::Info::with_size(width, height);
+            info.interlaced = true;
+            info.color_type = ColorType::Grayscale;
+            info.bit_depth = BitDepth::Eight;
+            raw_size(&info)
+        };
+        assert_eq!((size(1, 1), size(8, 8)), (2, 64 + 15));
     }
 }

@@ -6,7 +6,8 @@ use glam::DVec2;
 
 use super::cells::{self, SIDE_MAX, borders};
 use super::{Scene, excerpt};
-use crate::read_error::{Fault, Place, ReadError, read_text};
+use crate::read_error::{Fault, Place, ReadError};
+use crate::read_file::{SCENE_MAX, read_text};
 
 /// Reads a map in time linear in its cells.
 ///
@@ -34,7 +35,7 @@ impl GridMap {
     ///
     /// A file that cannot be opened, and contents that are not a map, with their place.
     pub fn read(path: &Path) -> Result<Self, ReadError> {
-        let text = read_text(path)?;
+        let text = read_text(path, SCENE_MAX)?;
         let read = || {
             let grid = Grid::parse(&text)?;
             let (width, height) = (grid.width, grid.height());

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::{Scene, dxf, geojson, layers, movingai, ros_map, svg, wkt};
-use crate::read_error::{ReadError, extension, read_bytes, read_text};
+use crate::read_error::{ReadError, extension};
+use crate::read_file::{SCENE_MAX, read_bytes, read_text};
 
 /// What a file leaves open and its reader needs to know.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -83,11 +84,11 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
 /// ```
 pub fn read_scene_with(path: &Path, options: &SceneOptions) -> Result<Scene, ReadError> {
     let parsed = match extension(path).as_str() {
-        "geojson" | "json" => geojson::parse(&read_text(path)?, &layers::keys(options)),
-        "wkt" => wkt::parse(&read_text(path)?),
-        "svg" => svg::parse(&read_text(path)?, options.flatten),
-        "dxf" => dxf::parse(&read_bytes(path)?, options.flatten),
-        "map" => movingai::parse(&read_text(path)?),
+        "geojson" | "json" => geojson::parse(&read_text(path, SCENE_MAX)?, &layers::keys(options)),
+        "wkt" => wkt::parse(&read_text(path, SCENE_MAX)?),
+        "svg" => svg::parse(&read_text(path, SCENE_MAX)?, options.flatten),
+        "dxf" => dxf::parse(&read_bytes(path, SCENE_MAX)?, options.flatten),
+        "map" => movingai::parse(&read_text(path, SCENE_MAX)?),
         "yaml" | "yml" => Ok(ros_map::read(path, options.ros, options.unknown)?),
         _ => {
             let extensions = &[".geojson", ".json", ".wkt", ".svg", ".dxf", ".map", ".yaml", ".yml"];

@@ -26,6 +26,7 @@ mod thinning;
 use glam::DVec2;
 
 use self::thinning::Thinning;
+use crate::geometry::number;
 use crate::scene::{AnchorError, Model, Scene};
 use crate::visibility::Visibility;
 
@@ -33,7 +34,7 @@ use crate::visibility::Visibility;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimplifyError {
     /// The tolerance is no length.
-    #[error("the tolerance is {0}; give a number above 0, in the scene's unit")]
+    #[error("the tolerance is {}; give a number above 0, in the scene's unit", number(*.0))]
     Tolerance(f64),
     /// A rope cannot be tied there.
     #[error(transparent)]

@@ -1,13 +1,14 @@
 //! Reading and checking a study's file.
 
 use std::f64::consts::PI;
-use std::fs;
 use std::path::Path;
 
 use glam::DVec2;
 
+use super::file_places::{explain, located, vanishing};
 use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
-use crate::geometry::check_point;
+use crate::geometry::{check_point, number};
+use crate::read_file::{SETTINGS_MAX, read_text};
 
 /// The study that is run when no file is given, and the template of new ones.
 pub const EXAMPLE: &str = include_str!("example.toml");
@@ -33,7 +34,8 @@ impl WalkPlan {
         };
         if !(step > 0.0 && check_point(DVec2::new(step, 0.0)).is_ok()) {
             return Err(PlanError::new(format!(
-                "walk.step: {step} is no length of a step; give a number above 0, in the scene's unit"
+                "walk.step: {} is no length of a step; give a number above 0, in the scene's unit",
+                number(step)
             )));
         }
         if !(1..=MOST_STEPS).contains(&steps) {
@@ -43,7 +45,8 @@ impl WalkPlan {
         }
         match *self {
             WalkPlan::Persistent { turn, .. } if !(0.0..=PI).contains(&turn) => Err(PlanError::new(format!(
-                "walk.turn: a heading cannot turn by {turn}; give radians, from 0 to pi ({PI})"
+                "walk.turn: a heading cannot turn by {}; give radians, from 0 to pi ({PI})",
+                number(turn)
             ))),
             _ => Ok(()),
         }
@@ -57,7 +60,7 @@ impl Plan {
     ///
     /// What is wrong, with its line; for an unknown key, the one that it is most like.
     pub fn read(path: &Path) -> Result<Plan, PlanError> {
-        let text = fs::read_to_string(path).map_err(|e| PlanError::new(e.to_string()).at(path))?;
+        let text = read_text(path, SETTINGS_MAX).map_err(|e| PlanError::new(e.to_string()))?;
         Plan::parse(&text).map_err(|e| e.at(path))
     }
 
@@ -77,7 +80,8 @@ impl Plan {
     /// ```
     pub fn parse(text: &str) -> Result<Plan, PlanError> {
         let plan: Plan = toml::from_str(text).map_err(|e| PlanError::new(explain(text, &e)))?;
-        plan.checked()
+        let checked = vanishing(text).map_or_else(|| plan.checked(), |what| Err(PlanError::new(what)));
+        checked.map_err(|e| PlanError::new(located(text, e.what)))
     }
 
     /// The plan, if it can be carried out as far as can be told without its scene.
@@ -130,7 +134,10 @@ impl Plan {
             return err("run.stride: must be at least 1, which uses every point".into());
         }
         if let Some(bad) = run.simplify.filter(|t| !(t.is_finite() && *t > 0.0)) {
-            return err(format!("run.simplify: {bad} is no tolerance; give a length above 0, or leave it out"));
+            return err(format!(
+                "run.simplify: {} is no tolerance; give a length above 0, or leave it out",
+                number(bad)
+            ));
         }
         if self.blocks() > MOST_BLOCKS {
             let least = run.count().div_ceil(MOST_BLOCKS);
@@ -157,13 +164,13 @@ impl Plan {
         }
         let tallies = &self.tallies;
         if !(tallies.confidence > 0.0 && tallies.confidence < 1.0) {
-            return err(format!("tallies.confidence: {} is not between 0 and 1", tallies.confidence));
+            return err(format!("tallies.confidence: {} is not between 0 and 1", number(tallies.confidence)));
         }
         if let Some(bad) = tallies.limits.iter().find(|l| !(l.is_finite() && **l >= 0.0)) {
-            return err(format!("tallies.limits: {bad} is no length"));
+            return err(format!("tallies.limits: {} is no length", number(*bad)));
         }
         if !(tallies.bin.is_finite() && tallies.bin >= 0.0) {
-            return err(format!("tallies.bin: {} is no width", tallies.bin));
+            return err(format!("tallies.bin: {} is no width", number(tallies.bin)));
         }
         if tallies.map > 4096 {
             return err(format!("tallies.map: at most 4096 cells side by side, not {}", tallies.map));
@@ -185,29 +192,6 @@ impl Plan {
     pub fn is_given(&self) -> bool {
         matches!(self.walk, WalkPlan::Given { .. })
     }
-}
-
-/// A message with a line number and, for an unknown key, the nearest known one.
-fn explain(text: &str, error: &toml::de::Error) -> String {
-    let line = error.span().map_or(String::new(), |span| {
-        let line = text[..span.start.min(text.len())].matches('\n').count() + 1;
-        format!("line {line}: ")
-    });
-    let message = error.message();
-    if message.contains("AnchorPlan") {
-        return format!("{line}anchor must be [x, y], a list of such, or {{ sample = N }}");
-    }
-    let named: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let nearest = match named.split_first() {
-        Some((&given, known)) if message.starts_with("unknown") => known
-            .iter()
-            .map(|k| (strsim::damerau_levenshtein(given, k), k))
-            .min()
-            .filter(|(distance, k)| *distance <= 1 + k.len() / 3)
-            .map(|(_, nearest)| format!("; did you mean `{nearest}`?")),
-        _ => None,
-    };
-    format!("{line}{message}{}", nearest.unwrap_or_default())
 }
 
 #[cfg(test)]

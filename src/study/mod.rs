@@ -2,6 +2,7 @@
 
 mod estimate;
 mod file;
+mod file_places;
 mod free_space;
 mod opened;
 mod order;

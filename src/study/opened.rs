@@ -15,6 +15,7 @@ use super::tally::Setting;
 use super::walk::Walks;
 use crate::example::BuiltIn;
 use crate::geometry::{Shown, number};
+use crate::read_file::open;
 use crate::scene::{AnchorError, Model, Scene, read_scene_with};
 use crate::simplify::simplify;
 use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
@@ -66,7 +67,7 @@ impl Study {
         if setting.bin < least {
             return Err(PlanError::new(format!(
                 "tallies.bin: {} is too narrow for lengths in this scene; give at least {least:e}, or 0 for a usual width",
-                setting.bin
+                number(setting.bin)
             )));
         }
         Ok(Study { plan, setting, given_models: models, walks, given, identity })
@@ -350,7 +351,8 @@ fn identity(plan: &Plan, models: &[Arc<Model>], given: Option<&Path>) -> Result<
     let scene = models[0].scene();
     (0..scene.walls().len()).flat_map(|wall| scene.ends(wall)).for_each(point);
     if let Some(path) = given {
-        let mut file = std::fs::File::open(path).map_err(|e| PlanError::new(e.to_string()).at(path))?;
+        // It is read twice, here and for its traces.
+        let mut file = open(path, false).map_err(|e| PlanError::new(e.to_string()))?;
         hasher.update_reader(&mut file).map_err(|e| PlanError::new(e.to_string()).at(path))?;
     }
     Ok(hasher.finalize().to_hex().to_string())

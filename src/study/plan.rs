@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::file_places::located;
 use crate::engine::Precision;
+use crate::read_file::{SETTINGS_MAX, read_text};
 use crate::scene::{Ros, SceneOptions};
 
 /// A study, as its file describes it. All lengths are in the scene's unit.
@@ -335,6 +337,15 @@ pub struct PlanError {
 impl PlanError {
     pub(super) fn new(what: impl Into<String>) -> Self {
         PlanError { path: None, what: what.into() }
+    }
+
+    /// The same of the study's file at `path`: with its name and, where a key of it is at fault, the line. What is wrong with other
+    /// files stays as it is.
+    #[must_use]
+    pub fn in_file(self, path: &Path) -> Self {
+        let text = read_text(path, SETTINGS_MAX).unwrap_or_default();
+        let what = located(&text, self.what.clone());
+        if self.path.is_some() || what == self.what { self } else { PlanError { path: Some(path.into()), what } }
     }
 
     pub(super) fn at(mut self, path: &Path) -> Self {

@@ -4,13 +4,13 @@
 //! pieces are read in parallel. From the first block with a quote on (or with line ends of old Macs), the crate `csv`
 //! reads the rest, record by record.
 
-use std::io::{Chain, Cursor, Read, Seek};
+use std::io::{Chain, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
 use rayon::prelude::*;
 
-use super::csv_lines::{first_line, is_plain, line_at, pieces, whole_lines};
+use super::csv_lines::{LINE_MAX, LINE_TOO_LONG, Watched, first_line, is_plain, line_ends, pieces, whole_lines};
 use super::csv_rows::{Chunk, Header};
 use super::gather::Gatherer;
 use crate::read_error::{Fault, Place, ReadError};
@@ -18,10 +18,13 @@ use crate::read_error::{Fault, Place, ReadError};
 /// How many bytes are read at a time: some pieces for every thread.
 const BLOCK: usize = 1 << 22;
 
+/// The same of a pipe, into which little may come at a time.
+const PIPE_BLOCK: usize = LINE_MAX + 1;
+
 /// The parser's buffer in bytes; large enough that reading costs little next to parsing.
 const BUFFER: usize = 1 << 18;
 
-/// How many records the parser reads at a time.
+/// How many records the parser reads at a time, if they have no more than a block of bytes.
 const RECORDS: usize = 1 << 14;
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -30,8 +33,9 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 pub(super) struct CsvRows<R> {
     input: Input<R>,
     header: Option<Header>,
-    /// Where in the file the block or the parser's text starts.
+    /// Where in the file the block or the parser's text starts, and in which line.
     start: u64,
+    line: u64,
     size: u64,
     position: u64,
     /// How many bytes are read at a time.
@@ -40,7 +44,7 @@ pub(super) struct CsvRows<R> {
 }
 
 /// The parser over the block with the first quote and all that follows.
-type Parser<R> = Reader<Chain<Cursor<Vec<u8>>, R>>;
+type Parser<R> = Reader<Watched<Chain<Cursor<Vec<u8>>, R>>>;
 
 enum Input<R> {
     /// Blocks of lines; with the start of the next block.
@@ -74,11 +78,12 @@ impl From<(u64, String)> for Stop {
 
 const EMPTY: &str = "the file is empty; its first line must be the header trace,x,y";
 
-impl<R: Read + Seek> CsvRows<R> {
-    /// The rows of `input`, the file of `size` bytes at `path`.
+impl<R: Read> CsvRows<R> {
+    /// The rows of `input`, the file of `size` bytes at `path`; of size 0 it may be a pipe.
     pub(super) fn new(input: R, size: u64, path: &Path) -> Self {
         let input = Input::Blocks(input, Vec::new());
-        CsvRows { input, header: None, start: 0, size, position: 0, block: BLOCK, path: path.into() }
+        let block = if size > 0 { BLOCK } else { PIPE_BLOCK };
+        CsvRows { input, header: None, start: 0, line: 1, size, position: 0, block, path: path.into() }
     }
 
     /// The same rows, read in blocks of about `block` bytes.
@@ -113,16 +118,19 @@ impl<R: Read + Seek> CsvRows<R> {
             // The parser takes a byte order mark at its start for one of the file; a line end before it is skipped.
             let lead: &[u8] = if self.start == 0 { b"" } else { b"\n" };
             self.start -= lead.len() as u64;
+            self.line -= lead.len() as u64;
             let text = Cursor::new([lead, &block, &rest].concat()).chain(input);
             let mut builder = ReaderBuilder::new();
-            let parser = builder.has_headers(false).flexible(true).buffer_capacity(BUFFER).from_reader(text);
+            builder.has_headers(false).flexible(true).buffer_capacity(BUFFER);
+            let parser = builder.from_reader(Watched::new(text, self.line));
             self.input = Input::Parser(Box::new(parser));
             return Ok(true);
         }
         if let Err(stop) = self.parse_block(&block, ended, gatherer) {
-            return Err(self.error(input, stop));
+            return Err(self.error(stop, |byte| self.line + line_ends(&block[..byte as usize])));
         }
         self.start += block.len() as u64;
+        self.line += line_ends(&block);
         self.position = self.start;
         if !ended {
             self.input = Input::Blocks(input, rest);
@@ -139,12 +147,15 @@ impl<R: Read + Seek> CsvRows<R> {
             let byte = (block.len() - rows.len()) as u64;
             let line;
             (line, rows) = first_line(rows);
+            if line.len() > LINE_MAX {
+                return Err((byte, LINE_TOO_LONG.to_owned()).into());
+            }
             if !line.is_empty() {
                 self.header = Some(Header::new(line.split(|&b| b == b',')).map_err(|what| (byte, what))?);
             }
         }
         let Some(header) = &self.header else {
-            return if ended { Err((0, EMPTY.to_owned()).into()) } else { Ok(()) };
+            return if ended { Err((block.len() as u64, EMPTY.to_owned()).into()) } else { Ok(()) };
         };
         let pieces = pieces(rows, block.len() - rows.len());
         let chunks: Vec<Chunk> =
@@ -161,7 +172,7 @@ impl<R: Read + Seek> CsvRows<R> {
                 }
                 Ok(more)
             }
-            Err(stop) => Err(self.error(parser.into_inner().into_inner().1, stop)),
+            Err(stop) => Err(self.error(stop, |byte| parser.get_ref().line_at(byte))),
         }
     }
 
@@ -177,7 +188,10 @@ impl<R: Read + Seek> CsvRows<R> {
         let header = self.header.as_ref().expect("it has been read");
         let mut chunk = Chunk::default();
         let mut more = Ok(true);
-        while chunk.len() < RECORDS && chunk.is_sound() && matches!(more, Ok(true)) {
+        let start = parser.position().byte();
+        parser.get_mut().forget(start);
+        let within = |parser: &Parser<R>| parser.position().byte() - start < BLOCK as u64;
+        while chunk.len() < RECORDS && chunk.is_sound() && matches!(more, Ok(true)) && within(parser) {
             more = next(parser, &mut record);
             if let Ok(true) = more {
                 chunk.push(byte(&record), header.row(record.iter().map(String::from_utf8_lossy)));
@@ -187,26 +201,35 @@ impl<R: Read + Seek> CsvRows<R> {
         more
     }
 
-    fn error(&self, input: R, stop: Stop) -> ReadError {
-        let (byte, what) = match stop {
-            Stop::Io(cause) => return ReadError::io(&self.path, cause),
-            Stop::Fault { byte, what } => (byte, what),
-        };
-        match line_at(input, self.start + byte) {
-            Ok(line) => Fault::new(Place::line(line), what).in_file(&self.path),
-            Err(cause) => ReadError::io(&self.path, cause),
+    /// The error with its line, which `line_of` knows.
+    fn error(&self, stop: Stop, line_of: impl Fn(u64) -> u64) -> ReadError {
+        match stop {
+            Stop::Io(cause) => ReadError::io(&self.path, cause),
+            Stop::Fault { byte, what } => Fault::new(Place::line(line_of(byte)), what).in_file(&self.path),
         }
     }
 }
 
-fn next(parser: &mut Reader<impl Read>, record: &mut ByteRecord) -> Result<bool, Stop> {
-    parser.read_byte_record(record).map_err(|e| {
-        let byte = e.position().map_or(0, |p| p.byte());
-        match e.into_kind() {
-            ErrorKind::Io(cause) => Stop::Io(cause),
-            kind => Stop::Fault { byte, what: format!("not CSV: {kind:?}") },
+/// Reads a record; false at the end.
+fn next<R: Read>(parser: &mut Reader<Watched<R>>, record: &mut ByteRecord) -> Result<bool, Stop> {
+    let start = parser.position().byte();
+    parser.get_mut().allow(start + BLOCK as u64);
+    let more = parser.read_byte_record(record);
+    let byte = |record: &ByteRecord| record.position().map_or(start, |p| p.byte());
+    match more {
+        Ok(_) if record.as_slice().len() > LINE_MAX => {
+            Err(Stop::Fault { byte: byte(record), what: LINE_TOO_LONG.to_owned() })
         }
-    })
+        Ok(more) => Ok(more),
+        Err(_) if parser.get_ref().is_spent() => Err(Stop::Fault { byte: start, what: LINE_TOO_LONG.to_owned() }),
+        Err(e) => {
+            let byte = e.position().map_or(start, |p| p.byte());
+            match e.into_kind() {
+                ErrorKind::Io(cause) => Err(Stop::Io(cause)),
+                kind => Err(Stop::Fault { byte, what: format!("not CSV: {kind:?}") }),
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -277,13 +300,30 @@ mod tests {
         let rest = "it must name trace, x and y, once each";
         for (text, expected) in [
             ("0,1.5,2\n", format!("line 1: no column trace in the header \"0,1.5,2\"; {rest}")),
-            ("trace;x;y\n", format!("line 1: no column trace in the header \"trace;x;y\"; {rest}")),
+            ("trace;X;y\n", format!("line 1: no column trace in the header \"trace;X;y\"; {rest}")),
+            (
+                "x;trace;y;n\n0;0,5;1\n",
+                "line 1: no column trace in the header \"x;trace;y;n\"; it is separated by semicolons: separate columns by \
+                 commas, and write numbers with a point (1.5)"
+                    .into(),
+            ),
+            (
+                "trace\tx\ty\r\n0\t0\t0\n",
+                "line 1: no column trace in the header \"trace\\tx\\ty\"; it is separated by tabulators: separate columns by \
+                 commas"
+                    .into(),
+            ),
+            ("trace,step,x,y,step\n", format!("line 1: two columns step in the header \"trace,step,x,y,step\"; {rest}")),
             ("\n\ntrace,X,y\n", format!("line 3: no column x in the header \"trace,X,y\"; {rest}")),
             ("y,trace,x,y\n0,0,0,0\n", format!("line 1: two columns y in the header \"y,trace,x,y\"; {rest}")),
         ] {
             assert_eq!(read(text).unwrap_err(), format!("t.csv: {expected}"));
         }
-        assert!(read("z".repeat(100_000)).unwrap_err().len() < 250);
+        assert!(read("z".repeat(60_000)).unwrap_err().len() < 250);
+        let wide = |end: &[u8]| {
+            [&b"\xff\xfe"[..], &"trace,x,y\n".bytes().flat_map(|b| [b, 0]).collect::<Vec<_>>(), end].concat()
+        };
+        assert!(read(wide(b"")).unwrap_err().ends_with("the file is UTF-16: save it as UTF-8 text"));
     }
 
     #[test]
@@ -303,7 +343,24 @@ mod tests {
             ("0,0,0\n1,0,0\n0,0,0\n", format!("line 4: trace 0 after trace 1; {order}")),
             ("7,0,0\n3,0,0\n", format!("line 3: trace 3 after trace 7; {order}")),
             ("0,0,0\n0,0\n", "line 3: 2 fields; the header has 3".into()),
-            ("0,0,0\n0,0,0,0\n", "line 3: 4 fields; the header has 3".into()),
+            (
+                "0,0,0\n0,0,5,2,5\n",
+                "line 3: 5 fields; the header has 3; a decimal comma makes two fields of a number, so write 1.5, not 1,5".into(),
+            ),
+            (
+                "0;1;2\n",
+                "line 2: 1 fields; the header has 3; the fields are separated by semicolons here: write commas, and 1.5, not \
+                 1,5"
+                    .into(),
+            ),
+            ("0,\"1,5\",2\n", format!("line 2: column x: \"1,5\" {coordinate}; its decimal comma must be a point")),
+            ("0,\"1,5,\",2\n", format!("line 2: column x: \"1,5,\" {coordinate}")),
+            ("0,++1,0\n", format!("line 2: column x: \"++1\" {coordinate}")),
+            (
+                "0,0,1e-400\n",
+                "line 2: column y: \"1e-400\" is too small for a number of 64 bits, and not 0; write 0 if that is meant".into(),
+            ),
+            ("0,1e-310,0\n", "line 2: column x: \"1e-310\" is too small for a number of 64 bits, and not 0; write 0 if that is meant".into()),
         ] {
             for start in ["", "\u{feff}"] {
                 let text = format!("{start}trace,x,y\n{rows}");
@@ -313,6 +370,46 @@ mod tests {
         }
         let e = read(b"trace,x,y\n0,\xff\xfe,0\n").unwrap_err();
         assert_eq!(e, format!("t.csv: line 2: column x: \"\u{fffd}\u{fffd}\" {coordinate}"));
+    }
+
+    #[test]
+    fn steps_are_looked_at_where_there_are_any() {
+        assert_eq!(read("step,trace,x,y\n0,0,1,1\n3,0,2,2\n1,5,3,3\n").unwrap().len(), 2);
+        let rule = "the rows of one trace must stand in the order of their steps, each once";
+        for quote in ["", "\""] {
+            let text = format!("trace,x,{quote}y{quote},step\n0,1,1,0\n0,2,2,3\n\n0,3,3,1\n");
+            assert_eq!(read(text).unwrap_err(), format!("t.csv: line 5: trace 0: step 1 after step 3; {rule}"));
+            let text = format!("trace,x,{quote}y{quote},step\n0,1,1,0.5\n");
+            assert_eq!(read(text).unwrap_err(), "t.csv: line 2: column step: \"0.5\" is not a whole number from 0");
+        }
+    }
+
+    #[test]
+    fn lines_without_an_end_are_refused() {
+        let long = "1".repeat(LINE_MAX + 1);
+        let expected = |line: usize| format!("t.csv: line {line}: {LINE_TOO_LONG}");
+        let start = "trace,x,y\n0,0,0\n";
+        for (text, line) in [
+            (long.clone(), 1),
+            (long.replace('1', "\0"), 1),
+            (format!("{start}0,0,{long}\n0,0,0\n"), 3),
+            (format!("{start}\n\n0,0,\"{long}\"\n"), 5),
+            // A quote that never ends takes up all lines to come.
+            (format!("{start}0,\"0,0\n{}", "1,2,3\n".repeat(1_000_000)), 3),
+            (format!("{start}{}0,\"0,0\n{}", "0,0,\"0\"\r\n".repeat(300_000), "1,2,3\n".repeat(20_000)), 300_003),
+        ] {
+            for block in [PIPE_BLOCK, BLOCK] {
+                assert_eq!(read_in_blocks(text.as_bytes(), block).unwrap_err(), expected(line));
+            }
+        }
+        // Up to that length lines are read, and empty ones are as many as one likes.
+        let spaces = " ".repeat(LINE_MAX - 5);
+        let text = format!("{start}0,{spaces}1,0\n{}0,2,0\n", "\n".repeat(100_000));
+        assert_eq!(shape(&read(&text).unwrap()), [(0, vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])]);
+        assert_eq!(read(text.replacen("0,0,0", "\"0\",0,0", 1)), read(&text));
+        // Line ends of old Macs.
+        let mac = format!("{}{}", start.replace('\n', "\r"), "0,1,1\r".repeat(100_000));
+        assert_eq!(read(&mac).unwrap()[0].points.len(), 100_001);
     }
 
     #[test]

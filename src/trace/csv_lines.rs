@@ -1,18 +1,20 @@
 //! Lines of a file: whole ones, pieces of them, and their numbers.
 
-use std::io::{BufRead, BufReader, Read, Seek};
+use std::io::{self, Read};
 
 /// How many bytes of lines a thread reads at a time: enough that switching costs little, and few enough that many threads
 /// have work.
 const PIECE: usize = 1 << 18;
 
+/// How long a line may be, in bytes: what goes on without an end is no table, and is not held in memory.
+pub(super) const LINE_MAX: usize = 1 << 16;
+
+/// What is said of a longer one.
+pub(super) const LINE_TOO_LONG: &str = "a line of more than 65536 bytes, so this is no table of points";
+
 /// Reads on for about `size` bytes after `start`, and returns the whole lines, the start of the next and whether the input
-/// has ended; then what is left is a whole line too.
-pub(super) fn whole_lines(
-    input: &mut impl Read,
-    start: Vec<u8>,
-    size: usize,
-) -> std::io::Result<(Vec<u8>, Vec<u8>, bool)> {
+/// has ended; then what is left is a whole line too. What has no line end within [`LINE_MAX`] bytes counts as whole.
+pub(super) fn whole_lines(input: &mut impl Read, start: Vec<u8>, size: usize) -> io::Result<(Vec<u8>, Vec<u8>, bool)> {
     let mut block = start;
     loop {
         let old = block.len();
@@ -23,6 +25,9 @@ pub(super) fn whole_lines(
         if let Some(last) = memchr::memrchr(b'\n', &block[old..]) {
             let rest = block.split_off(old + last + 1);
             return Ok((block, rest, false));
+        }
+        if block.len() > LINE_MAX {
+            return Ok((block, Vec::new(), false));
         }
     }
 }
@@ -46,29 +51,9 @@ pub(super) fn pieces(lines: &[u8], start: usize) -> Vec<(usize, &[u8])> {
     pieces
 }
 
-/// The line (from 1) of the first row at or after `byte`.
-///
-/// The parser's own line numbers are off where a row follows an empty line or a line that ends with CR LF, because it
-/// takes those line ends as part of the next row. Counting anew is exact, and is done for errors only.
-pub(super) fn line_at(mut input: impl Read + Seek, byte: u64) -> std::io::Result<u64> {
-    input.rewind()?;
-    let mut input = BufReader::with_capacity(PIECE, input);
-    let (mut line, mut at) = (1, 0);
-    loop {
-        let buffer = input.fill_buf()?;
-        if buffer.is_empty() {
-            return Ok(line);
-        }
-        for &b in buffer {
-            if at >= byte && !matches!(b, b'\r' | b'\n') {
-                return Ok(line);
-            }
-            line += u64::from(b == b'\n');
-            at += 1;
-        }
-        let read = buffer.len();
-        input.consume(read);
-    }
+/// How many lines end in `text`.
+pub(super) fn line_ends(text: &[u8]) -> u64 {
+    memchr::memchr_iter(b'\n', text).count() as u64
 }
 
 /// Splits off the first line, which comes without its end.
@@ -81,4 +66,63 @@ pub(super) fn first_line(text: &[u8]) -> (&[u8], &[u8]) {
         line = start;
     }
     (line, rest)
+}
+
+/// What the parser reads, with what is needed to say in which line a row starts.
+///
+/// The parser's own line numbers are off where a row follows an empty line or a line that ends with CR LF, because it
+/// takes those line ends as part of the next row. And it would take a quote that never ends for one row, whatever comes.
+pub(super) struct Watched<R> {
+    input: R,
+    /// What was read since [`forget`](Self::forget), and where that starts.
+    recent: Vec<u8>,
+    start: u64,
+    /// The line in which it starts.
+    line: u64,
+    /// Up to where the parser may read.
+    most: u64,
+}
+
+impl<R> Watched<R> {
+    /// Input that begins in that line.
+    pub(super) fn new(input: R, line: u64) -> Self {
+        Watched { input, recent: Vec::new(), start: 0, line, most: 0 }
+    }
+
+    /// Nothing before `byte` will be asked for again.
+    pub(super) fn forget(&mut self, byte: u64) {
+        let old = (byte.saturating_sub(self.start) as usize).min(self.recent.len());
+        self.line += line_ends(&self.recent[..old]);
+        self.recent.drain(..old);
+        self.start += old as u64;
+    }
+
+    /// Lets the parser read up to `byte` and its buffer full.
+    pub(super) fn allow(&mut self, byte: u64) {
+        self.most = byte;
+    }
+
+    /// Whether the parser wants more than it may have.
+    pub(super) fn is_spent(&self) -> bool {
+        self.start + self.recent.len() as u64 > self.most
+    }
+
+    /// The line (from 1) of the first row at or after `byte`.
+    pub(super) fn line_at(&self, byte: u64) -> u64 {
+        let before = (byte.saturating_sub(self.start) as usize).min(self.recent.len());
+        let (old, rest) = self.recent.split_at(before);
+        let empty = rest.iter().take_while(|b| matches!(b, b'\r' | b'\n')).count();
+        self.line + line_ends(old) + line_ends(&rest[..empty])
+    }
+}
+
+impl<R: Read> Read for Watched<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.is_spent() {
+            return Err(io::Error::other(LINE_TOO_LONG));
+        }
+        let read = self.input.read(buffer)?;
+        self.recent.extend_from_slice(&buffer[..read]);
+        Ok(read)
+    }
 }

@@ -4,24 +4,36 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::csv_lines::first_line;
-use super::gather::Gatherer;
+use super::csv_lines::{LINE_MAX, LINE_TOO_LONG, first_line};
+use super::gather::{Gatherer, STEP};
+use crate::number::{NumberFault, VANISHES};
 
-const COLUMNS: [&str; 3] = ["trace", "x", "y"];
+/// The columns; the last may be missing.
+const COLUMNS: [&str; 4] = ["trace", "x", "y", STEP];
 
 /// What the header says.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Header {
-    /// The fields in which trace, x and y stand.
-    fields: [usize; 3],
+    /// The fields in which trace, x, y and step stand; the last is beyond all of them where there are no steps.
+    fields: [usize; 4],
     /// How many fields each row has.
     width: usize,
+}
+
+/// What stands in a row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    trace: u64,
+    step: Option<u64>,
+    point: DVec2,
 }
 
 /// Rows that have been read, up to the first fault.
 #[derive(Debug, Default)]
 pub(super) struct Chunk {
     ids: Vec<u64>,
+    /// One for each row, or none at all.
+    steps: Vec<u64>,
     points: Vec<DVec2>,
     /// Where each row starts.
     bytes: Vec<u64>,
@@ -33,16 +45,17 @@ impl Header {
     /// Finds the columns among the fields of the first row.
     pub(super) fn new<'a>(fields: impl Iterator<Item = &'a [u8]>) -> Result<Self, String> {
         let found: Vec<_> = fields.map(|name| String::from_utf8_lossy(name.trim_ascii())).collect();
-        let mut fields = [0; 3];
+        let mut fields = [found.len(); 4];
         for (field, column) in fields.iter_mut().zip(COLUMNS) {
             let mut at = (0..found.len()).filter(|&i| found[i] == column);
             *field = match (at.next(), at.next()) {
                 (Some(i), None) => i,
+                (None, _) if column == STEP => continue,
                 (first, _) => {
                     let fault = if first.is_some() { "two columns" } else { "no column" };
-                    let names = excerpt(&found.join(","));
-                    let rule = "it must name trace, x and y, once each";
-                    return Err(format!("{fault} {column} in the header {names}; {rule}"));
+                    let names = found.join(",");
+                    let rule = separators(&names).unwrap_or("it must name trace, x and y, once each");
+                    return Err(format!("{fault} {column} in the header {}; {rule}", excerpt(&names)));
                 }
             };
         }
@@ -51,8 +64,8 @@ impl Header {
 
     /// The numbers in one row's fields. Where these are not UTF-8, they come with replacement characters, which are no part of
     /// a number.
-    pub(super) fn row<T: AsRef<str> + Default>(&self, fields: impl Iterator<Item = T>) -> Result<(u64, DVec2), String> {
-        let mut texts: [T; 3] = Default::default();
+    pub(super) fn row<T: AsRef<str> + Default>(&self, fields: impl Iterator<Item = T>) -> Result<Row, String> {
+        let mut texts: [T; 4] = Default::default();
         let mut width = 0;
         for field in fields {
             if let Some(column) = self.fields.iter().position(|&number| number == width) {
@@ -61,12 +74,21 @@ impl Header {
             width += 1;
         }
         if width != self.width {
-            return Err(format!("{width} fields; the header has {}", self.width));
+            let semicolon = texts.iter().any(|text| text.as_ref().contains(';'));
+            let why = match width > self.width {
+                true => "; a decimal comma makes two fields of a number, so write 1.5, not 1,5",
+                false if semicolon => "; the fields are separated by semicolons here: write commas, and 1.5, not 1,5",
+                false => "",
+            };
+            return Err(format!("{width} fields; the header has {}{why}", self.width));
         }
-        let [trace, x, y] = texts;
-        let id = number(trace.as_ref(), "trace", "a whole number from 0")?;
-        let coordinate = |text, column| number(text, column, "a number such as -1.25 or 3e-7");
-        Ok((id, DVec2::new(coordinate(x.as_ref(), "x")?, coordinate(y.as_ref(), "y")?)))
+        let [trace, x, y, step] = texts;
+        let whole = |text, column| number(text, column, "a whole number from 0", |t| t.parse().ok());
+        Ok(Row {
+            trace: whole(trace.as_ref(), "trace")?,
+            point: DVec2::new(coordinate(x.as_ref(), "x")?, coordinate(y.as_ref(), "y")?),
+            step: if self.fields[3] < width { Some(whole(step.as_ref(), STEP)?) } else { None },
+        })
     }
 }
 
@@ -86,6 +108,7 @@ impl Chunk {
                     Ok(text) => header.row(fields(&text[at..at + line.len()])),
                     Err(_) => header.row(fields(&String::from_utf8_lossy(line))),
                 };
+                let row = if line.len() > LINE_MAX { Err(LINE_TOO_LONG.to_owned()) } else { row };
                 chunk.push((start + at) as u64, row);
             }
         }
@@ -93,10 +116,11 @@ impl Chunk {
     }
 
     /// Adds the next row, which starts at `byte`, or its fault.
-    pub(super) fn push(&mut self, byte: u64, row: Result<(u64, DVec2), String>) {
+    pub(super) fn push(&mut self, byte: u64, row: Result<Row, String>) {
         match row {
-            Ok((id, point)) => {
-                self.ids.push(id);
+            Ok(Row { trace, step, point }) => {
+                self.ids.push(trace);
+                self.steps.extend(step);
                 self.points.push(point);
                 self.bytes.push(byte);
             }
@@ -117,7 +141,8 @@ impl Chunk {
     /// Gives the rows to `gatherer`; a fault comes with the byte at which its row starts.
     pub(super) fn gather(self, gatherer: &mut Gatherer) -> Result<(), (u64, String)> {
         let points = |rows: Range<usize>| self.points[rows].iter().copied();
-        gatherer.extend(&self.ids, points).map_err(|(row, what)| (self.bytes[row], what))?;
+        let steps = (!self.steps.is_empty()).then_some(&self.steps[..]);
+        gatherer.extend(&self.ids, steps, points).map_err(|(row, what)| (self.bytes[row], what))?;
         self.fault.map_or(Ok(()), Err)
     }
 }
@@ -132,8 +157,38 @@ fn fields(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-fn number<T: std::str::FromStr>(field: &str, column: &str, right: &str) -> Result<T, String> {
-    field.trim_ascii().parse().map_err(|_| format!("column {column}: {} is not {right}", excerpt(field)))
+fn coordinate(field: &str, column: &str) -> Result<f64, String> {
+    match crate::number::parse(field.trim_ascii()) {
+        Err(NumberFault::Vanishes) => Err(format!("column {column}: {} is {VANISHES}", excerpt(field))),
+        parsed => number(field, column, "a number such as -1.25 or 3e-7", |_| parsed.ok()),
+    }
+}
+
+fn number<T>(field: &str, column: &str, right: &str, parse: impl Fn(&str) -> Option<T>) -> Result<T, String> {
+    let text = field.trim_ascii();
+    parse(text).ok_or_else(|| {
+        let comma = text.contains(',') && crate::number::parse(&text.replacen(',', ".", 1)).is_ok();
+        let why = if comma { "; its decimal comma must be a point" } else { "" };
+        format!("column {column}: {} is not {right}{why}", excerpt(field))
+    })
+}
+
+/// What to do about a header that has the columns, separated by something else than commas.
+fn separators(names: &str) -> Option<&'static str> {
+    let rules = [
+        (';', "it is separated by semicolons: separate columns by commas, and write numbers with a point (1.5)"),
+        ('\t', "it is separated by tabulators: separate columns by commas"),
+        ('|', "it is separated by bars: separate columns by commas"),
+        (' ', "it is separated by spaces: separate columns by commas"),
+    ];
+    if names.starts_with('\u{fffd}') && names.contains('\0') {
+        return Some("the file is UTF-16: save it as UTF-8 text");
+    }
+    let has_all = |separator: char| {
+        let found: Vec<&str> = names.split(separator).map(|name| name.trim().trim_matches('"')).collect();
+        ["trace", "x", "y"].iter().all(|column| found.contains(column))
+    };
+    rules.iter().find(|(separator, _)| has_all(*separator)).map(|(_, rule)| *rule)
 }
 
 /// `text` in quotes, cut where it is too long for a message.

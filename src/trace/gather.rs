@@ -11,6 +11,9 @@ use crate::geometry::{check_point, check_points};
 /// The most points for which room is made ahead in a trace whose end is not known yet.
 const AHEAD: usize = 1 << 16;
 
+/// The column that may say which step of its trace a row is.
+pub(super) const STEP: &str = "step";
+
 /// Rows on their way into traces.
 #[derive(Default)]
 pub(super) struct Gatherer {
@@ -20,11 +23,19 @@ pub(super) struct Gatherer {
     points: usize,
     /// The trace of the last row, also when it was given away.
     last: Option<u64>,
+    /// The step of the last row, if rows have steps.
+    last_step: Option<u64>,
 }
 
 impl Gatherer {
-    /// Adds rows: the numbers of their traces, and what gives the points of some of them. A fault comes with its row.
-    pub(super) fn extend<I>(&mut self, ids: &[u64], points: impl Fn(Range<usize>) -> I) -> Result<(), (usize, String)>
+    /// Adds rows: the numbers of their traces, their steps if they have any, and what gives the points of some of them. A
+    /// fault comes with its row.
+    pub(super) fn extend<I>(
+        &mut self,
+        ids: &[u64],
+        steps: Option<&[u64]>,
+        points: impl Fn(Range<usize>) -> I,
+    ) -> Result<(), (usize, String)>
     where
         I: Iterator<Item = DVec2>,
     {
@@ -43,18 +54,37 @@ impl Gatherer {
                 let room = (end - first).max(if end < ids.len() { 0 } else { ahead });
                 self.traces.push_back(Trace { id, points: Vec::with_capacity(room) });
                 self.last = Some(id);
+                self.last_step = None;
             }
+            let out_of_order = steps.and_then(|steps| self.out_of_order(&steps[first..end]));
             let trace = self.traces.back_mut().expect("the last row's trace is kept");
             let old = trace.points.len();
             // Adding zero turns negative zeros into positive ones.
             trace.points.extend(points(first..end).map(|p| p + DVec2::ZERO));
-            if let Err((i, _)) = check_points(&trace.points[old..]) {
-                return Err((first + i, fault(trace.points[old + i]).unwrap_or_default()));
-            }
             self.points += end - first;
+            let wrong = check_points(&trace.points[old..]).err().map(|(i, _)| i);
+            match (wrong, out_of_order) {
+                (Some(i), other) if other.as_ref().is_none_or(|(j, _)| i <= *j) => {
+                    return Err((first + i, fault(trace.points[old + i]).unwrap_or_default()));
+                }
+                (_, Some((i, what))) => return Err((first + i, what)),
+                _ => {}
+            }
             first = end;
         }
         Ok(())
+    }
+
+    /// The first of the next steps of the last trace that does not come after the one before it, and what is wrong with it.
+    fn out_of_order(&mut self, steps: &[u64]) -> Option<(usize, String)> {
+        for (i, &step) in steps.iter().enumerate() {
+            if let Some(last) = self.last_step.replace(step).filter(|&last| step <= last) {
+                let id = self.last.unwrap_or_default();
+                let rule = "the rows of one trace must stand in the order of their steps, each once";
+                return Some((i, format!("trace {id}: step {step} after step {last}; {rule}")));
+            }
+        }
+        None
     }
 
     /// How many points are held.
@@ -108,7 +138,7 @@ mod tests {
     use super::*;
 
     fn push(gatherer: &mut Gatherer, ids: &[u64], xs: &[f64]) -> Result<(), (usize, String)> {
-        gatherer.extend(ids, |rows| xs[rows].iter().map(|&x| DVec2::new(x, 0.5)))
+        gatherer.extend(ids, None, |rows| xs[rows].iter().map(|&x| DVec2::new(x, 0.5)))
     }
 
     fn shape(batch: Option<Vec<Trace>>) -> Vec<(u64, usize)> {
@@ -127,10 +157,33 @@ mod tests {
         assert_eq!(e, (1, "column x: NaN is not a finite number".into()));
         // What is wrong with the row itself is said before its place.
         assert!(push(&mut gatherer, &[6], &[f64::NAN]).unwrap_err().1.starts_with("column x"));
-        let e = gatherer.extend(&[7], |_| std::iter::once(DVec2::new(1.0, f64::NAN))).unwrap_err();
+        let e = gatherer.extend(&[7], None, |_| std::iter::once(DVec2::new(1.0, f64::NAN))).unwrap_err();
         assert_eq!(e.1, "column y: NaN is not a finite number");
         let traces = gatherer.take(9, 99, true).unwrap();
         assert_eq!(traces[0].points[1].x.to_bits(), 0);
+    }
+
+    #[test]
+    fn steps_may_not_go_back_within_a_trace() {
+        let rows = |parts: &[(&[u64], &[u64])]| {
+            let mut gatherer = Gatherer::default();
+            parts.iter().try_for_each(|(ids, steps)| {
+                gatherer.extend(ids, Some(steps), |rows| {
+                    rows.map(|i| DVec2::new(if steps[i] == 99 { f64::NAN } else { 0.5 }, 0.0))
+                })
+            })
+        };
+        rows(&[(&[0, 0, 0, 1, 1, 2], &[0, 1, 7, 0, 1, 5]), (&[2, 2, 3], &[6, 8, 0])]).unwrap();
+        let rule = "the rows of one trace must stand in the order of their steps, each once";
+        let e = rows(&[(&[0, 1, 1, 1], &[0, 3, 5, 4])]).unwrap_err();
+        assert_eq!(e, (3, format!("trace 1: step 4 after step 5; {rule}")));
+        // A row that is there twice, across what is read at a time.
+        let e = rows(&[(&[4], &[2]), (&[4], &[2])]).unwrap_err();
+        assert_eq!(e, (0, format!("trace 4: step 2 after step 2; {rule}")));
+        // The first fault is named, and of one row that of its point.
+        assert!(rows(&[(&[0, 0, 0], &[1, 0, 99])]).unwrap_err().1.contains("step 0 after step 1"));
+        assert!(rows(&[(&[0, 0, 0], &[1, 99, 0])]).unwrap_err().1.contains("NaN"));
+        assert!(rows(&[(&[0, 0], &[100, 99])]).unwrap_err().1.contains("NaN"));
     }
 
     #[test]

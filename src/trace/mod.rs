@@ -6,6 +6,7 @@ mod csv_file;
 mod csv_lines;
 mod csv_rows;
 mod gather;
+mod parquet_columns;
 mod parquet_file;
 mod pluck;
 mod read;

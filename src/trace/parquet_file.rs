@@ -1,24 +1,19 @@
 //! Traces as Parquet: columns `trace`, `x` and `y`, one row a point.
 
-use std::borrow::Cow;
 use std::fs::File;
 
-use arrow_array::cast::AsArray;
-use arrow_array::types::{Float64Type, Int32Type, Int64Type, UInt32Type, UInt64Type};
-use arrow_array::{Array, ArrayRef, ArrowPrimitiveType, PrimitiveArray, RecordBatch};
-use arrow_schema::{DataType, Schema};
+use arrow_array::RecordBatch;
 use glam::DVec2;
 use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
+use parquet::arrow::arrow_reader::{ArrowReaderOptions, ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
 
-use super::gather::Gatherer;
+use super::gather::{Gatherer, STEP};
+use super::parquet_columns::{check_compression, coordinates, find, whole};
 use crate::caught::caught;
 use crate::read_error::{Fault, Place};
 
 /// Rows that are decoded at a time: few enough that their memory is used again and stays in the cache.
 const BATCH: usize = 1 << 13;
-
-const COLUMNS: [&str; 3] = ["trace", "x", "y"];
 
 /// The rows of a file under way.
 pub(super) struct ParquetRows {
@@ -31,8 +26,12 @@ impl ParquetRows {
     /// Reads the schema of `file`.
     pub(super) fn open(file: File) -> Result<Self, Fault> {
         let open = || {
-            let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| damaged(Place::default(), e))?;
-            let columns = columns(builder.schema()).map_err(|what| Fault::new(Place::default(), what))?;
+            // Programs add their own types, such as categories. What Parquet itself says of the columns is enough.
+            let options = ArrowReaderOptions::new().with_skip_arrow_metadata(true);
+            let builder = ParquetRecordBatchReaderBuilder::try_new_with_options(file, options)
+                .map_err(|e| damaged(Place::default(), e))?;
+            let columns = find(builder.schema()).map_err(|what| Fault::new(Place::default(), what))?;
+            check_compression(builder.metadata()).map_err(|what| Fault::new(Place::default(), what))?;
             let mask = ProjectionMask::roots(builder.parquet_schema(), columns);
             let rows = builder.metadata().file_metadata().num_rows().try_into().unwrap_or(0);
             let builder = builder.with_projection(mask).with_batch_size(BATCH);
@@ -71,69 +70,13 @@ fn damaged(place: Place, e: impl std::fmt::Display) -> Fault {
     Fault::new(place, format!("not Parquet, or damaged: {e}"))
 }
 
-/// The numbers of the columns trace, x and y in a schema, whose types must fit.
-fn columns(schema: &Schema) -> Result<[usize; 3], String> {
-    let mut columns = [0; 3];
-    for (column, name) in columns.iter_mut().zip(COLUMNS) {
-        let Some((number, field)) = schema.column_with_name(name) else {
-            let found: Vec<_> = schema.fields().iter().map(|f| f.name().as_str()).collect();
-            return Err(format!("no column {name} among {}; trace, x and y are needed", found.join(", ")));
-        };
-        *column = number;
-        let (fits, right) = match name {
-            "trace" => (
-                matches!(field.data_type(), DataType::UInt64 | DataType::UInt32 | DataType::Int64 | DataType::Int32),
-                "a whole number, best UInt64",
-            ),
-            _ => (field.data_type() == &DataType::Float64, "Float64, so that results are exact"),
-        };
-        if !fits {
-            return Err(format!("column {name} is {}; write it as {right}", field.data_type()));
-        }
-    }
-    Ok(columns)
-}
-
 /// Adds a batch's rows; a fault comes with its row in the batch.
 fn rows(batch: &RecordBatch, gatherer: &mut Gatherer) -> Result<(), (usize, String)> {
-    let column = |name: &str| batch.column_by_name(name).ok_or_else(|| (0, format!("no column {name}")));
-    let ids = ids(column("trace")?)?;
-    let [x, y] = [column("x")?, column("y")?].map(|array| array.as_primitive::<Float64Type>());
-    let first_null = |name: &str, array: &dyn Array| {
-        let row = (0..array.len()).find(|&row| array.is_null(row));
-        row.map_or(Ok(()), |row| Err((row, format!("column {name}: null; every row needs a number"))))
-    };
-    for (name, array) in [("x", x), ("y", y)] {
-        if array.null_count() > 0 {
-            first_null(name, array)?;
-        }
-    }
-    let array = column("trace")?;
-    if array.null_count() > 0 {
-        first_null("trace", array)?;
-    }
-    let (x, y) = (x.values(), y.values());
-    gatherer.extend(&ids, |rows| x[rows.clone()].iter().zip(&y[rows]).map(|(&x, &y)| DVec2::new(x, y)))
-}
-
-/// The traces' numbers; what stands in null rows is of no matter.
-fn ids(array: &ArrayRef) -> Result<Cow<'_, [u64]>, (usize, String)> {
-    fn widen<T: ArrowPrimitiveType>(array: &PrimitiveArray<T>) -> Result<Cow<'_, [u64]>, (usize, String)>
-    where
-        T::Native: TryInto<u64> + Copy + std::fmt::Display,
-    {
-        let wide = |(row, &id): (usize, &T::Native)| match id.try_into() {
-            Ok(id) => Ok(id),
-            Err(_) => Err((row, format!("column trace: {id} is not a whole number from 0"))),
-        };
-        array.values().iter().enumerate().map(wide).collect::<Result<Vec<u64>, _>>().map(Cow::Owned)
-    }
-    match array.data_type() {
-        DataType::UInt32 => widen(array.as_primitive::<UInt32Type>()),
-        DataType::Int32 => widen(array.as_primitive::<Int32Type>()),
-        DataType::Int64 => widen(array.as_primitive::<Int64Type>()),
-        _ => Ok(Cow::Borrowed(array.as_primitive::<UInt64Type>().values())),
-    }
+    let ids = whole(batch, "trace")?.ok_or_else(|| (0, "no column trace".to_owned()))?;
+    let steps = whole(batch, STEP)?;
+    let [x, y] = [coordinates(batch, "x")?, coordinates(batch, "y")?];
+    let points = |rows: std::ops::Range<usize>| x[rows.clone()].iter().zip(&y[rows]).map(|(&x, &y)| DVec2::new(x, y));
+    gatherer.extend(&ids, steps.as_deref(), points)
 }
 
 #[cfg(test)]
@@ -141,7 +84,12 @@ mod tests {
     use std::path::Path;
     use std::sync::Arc;
 
-    use arrow_array::{Float32Array, Float64Array, Int32Array, Int64Array, StringArray, UInt32Array, UInt64Array};
+    use arrow_array::types::{Int8Type, Int64Type};
+    use arrow_array::{
+        ArrayRef, Decimal128Array, DictionaryArray, FixedSizeBinaryArray, Float32Array, Float64Array, Int8Array,
+        Int16Array, Int32Array, Int64Array, StringArray, UInt8Array, UInt16Array, UInt32Array, UInt64Array,
+    };
+    use arrow_schema::{DataType, Field, Schema};
     use parquet::arrow::ArrowWriter;
 
     use super::*;
@@ -178,7 +126,14 @@ mod tests {
 
     #[test]
     fn columns_are_found_by_name_and_ids_widened() {
-        let ids: [ArrayRef; 4] = [
+        let categories = Int64Array::from(vec![9, 0]);
+        let ids: [ArrayRef; 10] = [
+            Arc::new(Int8Array::from(vec![0, 0, 9])),
+            Arc::new(Int16Array::from(vec![0, 0, 9])),
+            Arc::new(UInt8Array::from(vec![0, 0, 9])),
+            Arc::new(UInt16Array::from(vec![0, 0, 9])),
+            Arc::new(DictionaryArray::<Int8Type>::new(vec![1, 1, 0].into(), Arc::new(categories.clone()))),
+            Arc::new(DictionaryArray::<Int64Type>::new(vec![1, 1, 0].into(), Arc::new(categories))),
             Arc::new(UInt64Array::from(vec![0, 0, 9])),
             Arc::new(UInt32Array::from(vec![0, 0, 9])),
             Arc::new(Int64Array::from(vec![0, 0, 9])),
@@ -201,20 +156,91 @@ mod tests {
     fn columns_that_do_not_fit_are_named() {
         let ids = || -> ArrayRef { Arc::new(UInt64Array::from(vec![0])) };
         let x = || f64s(&[0.0]);
-        let narrow: ArrayRef = Arc::new(Float32Array::from(vec![0.0]));
+        let decimal =
+            || -> ArrayRef { Arc::new(Decimal128Array::from(vec![0]).with_precision_and_scale(38, 0).unwrap()) };
+        let wide: ArrayRef = Arc::new(FixedSizeBinaryArray::try_from_iter([[0u8; 16]].iter()).unwrap());
+        let text = || -> ArrayRef { Arc::new(StringArray::from(vec!["0"])) };
         for (columns, expected) in [
             (vec![("trace", ids()), ("x", x())], "no column y among trace, x; trace, x and y are needed"),
             (
-                vec![("trace", ids()), ("x", narrow), ("y", x())],
-                "column x is Float32; write it as Float64, so that results are exact",
+                vec![("trace", x()), ("x", x()), ("y", x())],
+                "column trace is Float64, as DuckDB writes HUGEINT; write it as a whole number of 64 bits, \
+                 CAST(trace AS BIGINT)",
             ),
             (
-                vec![("trace", x()), ("x", x()), ("y", x())],
-                "column trace is Float64; write it as a whole number, best UInt64",
+                vec![("trace", decimal()), ("x", x()), ("y", x())],
+                "column trace is Decimal128(38, 0); write it as a number of 64 bits, CAST(trace AS BIGINT)",
+            ),
+            (
+                vec![("trace", ids()), ("x", x()), ("y", decimal())],
+                "column y is Decimal128(38, 0); write it as a number of 64 bits, CAST(y AS DOUBLE)",
+            ),
+            (
+                vec![("trace", wide), ("x", x()), ("y", x())],
+                "column trace is FixedSizeBinary(16), as Polars writes Int128; write it as a whole number of 64 bits, \
+                 cast(pl.Int64)",
+            ),
+            (
+                vec![("trace", text()), ("x", x()), ("y", x())],
+                "column trace is Utf8; write it as a whole number, best UInt64",
+            ),
+            (
+                vec![("trace", ids()), ("x", text()), ("y", x())],
+                "column x is Utf8; write it as Float64, so that results are exact",
+            ),
+            (
+                vec![("trace", ids()), ("x", x()), ("y", x()), ("step", x())],
+                "column step is Float64, as DuckDB writes HUGEINT; write it as a whole number of 64 bits, \
+                 CAST(step AS BIGINT)",
             ),
         ] {
             assert_eq!(fault(columns), format!("t.parquet: {expected}"));
         }
+        let both = Schema::new(vec![
+            Field::new("trace", DataType::UInt64, false),
+            Field::new("x", DataType::Float64, false),
+            Field::new("x", DataType::Float64, false),
+            Field::new("y", DataType::Float64, false),
+        ]);
+        assert_eq!(find(&both).unwrap_err(), "two columns x; there must be one");
+    }
+
+    #[test]
+    fn coordinates_are_taken_exactly_as_they_stand() {
+        let ids = || -> ArrayRef { Arc::new(UInt64Array::from(vec![0; 3])) };
+        let read = |x: ArrayRef| read(&bytes(vec![("trace", ids()), ("x", x), ("y", f64s(&[0.0; 3]))]));
+        let xs = |x: ArrayRef| read(x).unwrap()[0].points.iter().map(|p| p.x).collect::<Vec<_>>();
+        assert_eq!(
+            xs(Arc::new(Float32Array::from(vec![0.1, -0.0, 3e-39]))),
+            [f64::from(0.1f32), 0.0, f64::from(3e-39f32)]
+        );
+        assert_eq!(xs(Arc::new(Int8Array::from(vec![-128, 0, 7]))), [-128.0, 0.0, 7.0]);
+        assert_eq!(xs(Arc::new(UInt32Array::from(vec![u32::MAX, 0, 7]))), [f64::from(u32::MAX), 0.0, 7.0]);
+        let most = 1i64 << 53;
+        assert_eq!(
+            xs(Arc::new(Int64Array::from(vec![most, -most, most + 2]))),
+            [most as f64, -most as f64, (most + 2) as f64]
+        );
+        let e = read(Arc::new(Int64Array::from(vec![0, most, most + 1]))).unwrap_err();
+        assert_eq!(e, "t.parquet: row 2: column x: 9007199254740993 has more digits than Float64; write it as Float64");
+        assert!(read(Arc::new(UInt64Array::from(vec![0, 0, u64::MAX]))).unwrap_err().contains("row 2: column x"));
+    }
+
+    #[test]
+    fn steps_are_looked_at_where_there_are_any() {
+        let ids = || -> ArrayRef { Arc::new(UInt8Array::from(vec![0, 0, 1])) };
+        let x = || f64s(&[0.0, 1.0, 2.0]);
+        let with = |steps: ArrayRef| {
+            read(&bytes(vec![("step", steps), ("trace", ids()), ("x", x()), ("y", x())])).map(|traces| traces.len())
+        };
+        assert_eq!(with(Arc::new(Int16Array::from(vec![3, 5, 0]))), Ok(2));
+        let rule = "the rows of one trace must stand in the order of their steps, each once";
+        let e = with(Arc::new(UInt64Array::from(vec![5, 3, 0]))).unwrap_err();
+        assert_eq!(e, format!("t.parquet: row 1: trace 0: step 3 after step 5; {rule}"));
+        let e = with(Arc::new(Int64Array::from(vec![0, 1, -1]))).unwrap_err();
+        assert_eq!(e, "t.parquet: row 2: column step: -1 is not a whole number from 0");
+        let e = with(Arc::new(Int64Array::from(vec![Some(0), None, Some(1)]))).unwrap_err();
+        assert_eq!(e, "t.parquet: row 1: column step: null; every row needs a number");
     }
 
     #[test]

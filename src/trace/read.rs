@@ -8,11 +8,14 @@ use super::csv_file::CsvRows;
 use super::gather::Gatherer;
 use super::parquet_file::ParquetRows;
 use crate::read_error::{ReadError, extension};
+use crate::read_file::{open, special};
 
 /// Reads the traces in `path`: columns `trace` (a whole number from 0), `x` and `y`, as `.csv` or `.parquet`.
 ///
 /// Columns may stand in any order and among others. The rows of one trace follow each other, and the numbers of traces
-/// increase; they may leave gaps. A file without rows has no traces.
+/// increase; they may leave gaps. Where there is a column `step` of whole numbers from 0, these increase within each trace.
+/// A file without rows has no traces. In Parquet, whole numbers may have any width, and coordinates may be floats or whole
+/// numbers: each is taken exactly. A pipe is read too, as CSV; devices are not.
 ///
 /// # Errors
 ///
@@ -54,16 +57,15 @@ impl TraceReader {
     ///
     /// A file that cannot be opened, an extension of another format, and columns that do not fit.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        let format = extension(path);
+        let mut format = extension(path);
+        if format.is_empty() && is_pipe(path) {
+            format = "csv".into();
+        }
         if !["csv", "parquet"].contains(&format.as_str()) {
             let extensions = &[".csv", ".parquet"];
             return Err(ReadError::Extension { path: path.into(), what: "traces", extensions });
         }
-        let file = File::open(path).map_err(|cause| ReadError::io(path, cause))?;
-        // A folder opens like a file and fails later, where a decoder would take it for damage.
-        if path.is_dir() {
-            return Err(ReadError::io(path, std::io::ErrorKind::IsADirectory.into()));
-        }
+        let file = open(path, format == "csv")?;
         let rows = if format == "csv" {
             let size = file.metadata().map_or(0, |m| m.len());
             Rows::Csv(Box::new(CsvRows::new(file, size, path)))
@@ -111,6 +113,11 @@ impl TraceReader {
             Rows::Parquet(rows) => rows.position(),
         }
     }
+}
+
+/// Whether a shell's `<(...)` or a named pipe stands at `path`.
+fn is_pipe(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|metadata| special(&metadata) == Some("a pipe"))
 }
 
 #[cfg(test)]

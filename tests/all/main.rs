@@ -29,4 +29,5 @@ mod stride;
 mod study_truth;
 mod support;
 mod touch;
+mod trace_files;
 mod visibility;

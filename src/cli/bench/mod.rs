@@ -105,7 +105,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let environment = Environment::here(device.as_ref().map(|d| d.summary().clone()));
     let measured = measure_all(&settings, &contenders, device.as_ref(), &args.plan())?;
     for skipped in &measured.skipped {
-        eprintln!("note: {} was left out: {}", skipped.contender, skipped.why);
+        say!("note: {} was left out: {}", skipped.contender, skipped.why);
     }
     if let (true, Some(first)) = (measured.rows.is_empty(), measured.skipped.first()) {
         return Err(Failure::input(anyhow!("nothing could be measured: {}", first.why)));
@@ -198,13 +198,13 @@ pub(super) fn open_device(adapter: Option<&str>, is_asked_for: bool) -> Result<O
     let choice = adapter.map_or(AdapterChoice::Best, named);
     match Device::open(&choice) {
         Ok(device) => {
-            eprintln!("engine: gpu on {}", device.summary());
-            notes(&choice, &device).iter().for_each(|note| eprintln!("{note}"));
+            say!("engine: gpu on {}", device.summary());
+            notes(&choice, &device).iter().for_each(|note| say!("{note}"));
             Ok(Some(device))
         }
         Err(error) if adapter.is_some() || is_asked_for => Err(error.into()),
         Err(error) => {
-            eprintln!("note: {error}");
+            say!("note: {error}");
             Ok(None)
         }
     }

@@ -199,7 +199,7 @@ impl Folder {
             return self.state(study);
         }
         let part = shard(&self.remembered()?.shard).map_err(|e| Failure::input(anyhow!(e)))?;
-        eprintln!("note: {}: no state was saved, so the study begins", self.path.display());
+        say!("note: {}: no state was saved, so the study begins", self.path.display());
         Ok(State::new(study, part))
     }
 

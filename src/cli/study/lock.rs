@@ -33,7 +33,7 @@ impl Lock {
             match patiently(|| file.try_lock()) {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(in_use(folder, &mut file)),
-                Err(TryLockError::Error(e)) => eprintln!(
+                Err(TryLockError::Error(e)) => say!(
                     "note: {}: the file system has no locks ({e}); see to it that nothing else writes there",
                     folder.display()
                 ),

@@ -150,7 +150,7 @@ fn is_whole(file: &Path, known: &Check) -> bool {
         Ok(_) => "damaged: its check sum is wrong".to_owned(),
         Err(e) => e.to_string(),
     };
-    eprintln!("note: {}: {what}; its rows are computed again", file.display());
+    say!("note: {}: {what}; its rows are computed again", file.display());
     false
 }
 

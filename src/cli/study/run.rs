@@ -10,7 +10,7 @@ use tautline::engine::{Engine, Job};
 use tautline::picture;
 use tautline::report::Environment;
 use tautline::study::{
-    EXAMPLE, Plan, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go, run_again as go_again,
+    EXAMPLE, Plan, PlanError, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go, run_again as go_again,
 };
 
 use super::folder::{BaseArgs, Folder, PAGE, RUN_REPORT, SUMMARY};
@@ -89,8 +89,12 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
             "--shard: a shard cannot know when the whole study is certain enough; leave out [until]"
         )));
     }
-    let study = Study::open(plan, &base)?;
-    study.check_moves()?;
+    let located = |e: PlanError| match &args.file {
+        Some(file) => e.in_file(file),
+        None => e,
+    };
+    let study = Study::open(plan, &base).map_err(located)?;
+    study.check_moves().map_err(located)?;
     if let Some(file) = &study.plan().scene.file {
         note(file, study.models()[0].scene());
         // Sampled anchors lie in the free space of the first one.
@@ -127,8 +131,8 @@ fn begin(folder: &Folder, study: &Study, base: &Path, part: Shard) -> Result<Sta
     if let Some(state) = &held {
         let (shown, done, all) = (folder.path().display(), state.place(study), study.places(part));
         match state.stopped() {
-            Stopped::Unfinished => eprintln!("note: {shown} holds {done} of {all} traces of this study already"),
-            _ => eprintln!("note: {shown} holds the answer of this study already"),
+            Stopped::Unfinished => say!("note: {shown} holds {done} of {all} traces of this study already"),
+            _ => say!("note: {shown} holds the answer of this study already"),
         }
     }
     // What is written besides the answer may be asked for in another way than before.

@@ -35,7 +35,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     };
     if is_other {
         let (file, shown) = (file.display(), folder.path().display());
-        eprintln!("note: {file} does not hold this answer; `tautline study resume {shown}` writes it");
+        say!("note: {file} does not hold this answer; `tautline study resume {shown}` writes it");
     }
     if args.json {
         return print_json(&answer);

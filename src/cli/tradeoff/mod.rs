@@ -11,7 +11,7 @@ use glam::DVec2;
 use tautline::engine::WINDOW;
 use tautline::example::{Walker, walks};
 use tautline::gpu::Device;
-use tautline::output::WholeFile;
+use tautline::output::{WholeFile, check_place};
 use tautline::picture;
 use tautline::report::Environment;
 use tautline::report::bench::{BenchScene, Gear, Plan};
@@ -231,6 +231,7 @@ struct Diagram {
 impl Diagram {
     /// Checks, before anything is measured, that the file can be written. Leaves nothing behind.
     fn new(path: &Path) -> Result<Self, Failure> {
+        check_place(path)?;
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         let is_png = match extension.as_str() {
             "svg" => false,
@@ -251,7 +252,7 @@ impl Diagram {
             false => svg.into_bytes(),
         };
         write_whole(&self.path, &bytes)?;
-        eprintln!("wrote {}", self.path.display());
+        say!("wrote {}", self.path.display());
         Ok(())
     }
 }

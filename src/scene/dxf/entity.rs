@@ -1,5 +1,6 @@
 //! The groups of a DXF file: pairs of a code and a value, gathered into entities.
 
+use crate::number::{self, NumberFault, VANISHES};
 use crate::read_error::{Fault, Place};
 
 /// An entity, or any other thing that starts with code 0: its kind, and the groups up to the next one.
@@ -52,7 +53,10 @@ impl<'a> Entity<'a> {
     }
 
     pub(super) fn parse(&self, code: i32, value: &str) -> Result<f64, Fault> {
-        value.parse().map_err(|_| self.wrong(code, value, "number"))
+        number::parse(value).map_err(|fault| match fault {
+            NumberFault::NoNumber => self.wrong(code, value, "number"),
+            NumberFault::Vanishes => self.fault(format_args!("group code {code} has the value {value:?}, {VANISHES}")),
+        })
     }
 
     fn wrong(&self, code: i32, value: &str, right: &str) -> Fault {

@@ -2,12 +2,15 @@
 
 use geojson::{Feature, GeoJson, JsonValue};
 
+use crate::number::{self, VANISHES};
 use crate::read_error::{Fault, Place};
+use crate::scene::excerpt;
 
 /// The document. A LinearRing, which some programs write, becomes the LineString that it is.
 ///
 /// The second look at a document that is not taken at once costs several times its size; it is a rare one.
 pub(super) fn parse(text: &str) -> Result<GeoJson, Fault> {
+    check_numbers(text)?;
     serde_json::from_str(text).or_else(|e| {
         let Ok(mut value) = serde_json::from_str::<JsonValue>(text) else { return Err(fault(&e, None)) };
         let rings = replace_rings(&mut value);
@@ -21,6 +24,25 @@ pub(super) fn parse(text: &str) -> Result<GeoJson, Fault> {
             Err(other) => Err(fault(if rings { &other } else { &e }, None)),
         }
     })
+}
+
+/// Refuses numbers that the parser would round to 0. They are looked for outside of strings.
+fn check_numbers(text: &str) -> Result<(), Fault> {
+    let (mut rest, mut quoted) = (text, false);
+    while !rest.is_empty() {
+        let end = rest.find('"').unwrap_or(rest.len());
+        let at = text.len() - rest.len();
+        if !quoted && let Some(number) = number::vanishing(&rest[..end]) {
+            let before = &text[..at + number.start];
+            let column = before.len() - before.rfind('\n').map_or(0, |end| end + 1) + 1;
+            let place = Place::line(before.matches('\n').count() as u64 + 1).then("column", column);
+            return Err(Fault::new(place, format!("{} is {VANISHES}", excerpt(&rest[number]))));
+        }
+        let escaped = quoted && rest[..end].bytes().rev().take_while(|&b| b == b'\\').count() % 2 == 1;
+        quoted ^= !escaped;
+        rest = rest.get(end + 1..).unwrap_or_default();
+    }
+    Ok(())
 }
 
 /// Makes a LineString of each LinearRing; whether there are any.

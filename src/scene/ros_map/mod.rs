@@ -10,7 +10,8 @@ use glam::DVec2;
 use super::cells::{self, borders};
 use super::image;
 use super::{Ros, Scene, Unknown};
-use crate::read_error::{Fault, Place, ReadError, read_text};
+use crate::read_error::{Fault, Place, ReadError};
+use crate::read_file::{SETTINGS_MAX, read_text};
 use cell::Cell;
 use yaml::values;
 
@@ -43,7 +44,7 @@ enum Mode {
 /// Reads a map and the image that it names, relative to the map's own folder. Coordinates are metres in the map's frame,
 /// y upwards. What lies around the image is no cell: its outer edge is no wall.
 pub(super) fn read(path: &Path, ros: Ros, unknown: Unknown) -> Result<Scene, ReadError> {
-    let text = read_text(path)?;
+    let text = read_text(path, SETTINGS_MAX)?;
     let map = parse(&text).map_err(|fault| fault.in_file(path))?;
     let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
     let mut counts = Counts::default();

@@ -3,7 +3,11 @@
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
 use super::super::excerpt;
+use crate::number;
 use crate::read_error::{Fault, Place};
+
+/// How many keys a map may have, each of which is compared with all others.
+const KEYS_MAX: usize = 1 << 10;
 
 /// A value of the file, and its line.
 pub(super) struct Value {
@@ -21,7 +25,7 @@ impl Value {
 
     /// As many finite numbers: a list, or a value alone if it is to be one.
     pub(super) fn numbers<const N: usize>(&self, key: &str, right: &str) -> Result<[f64; N], Fault> {
-        let numbers: Option<Vec<f64>> = self.items.iter().map(|item| item.parse().ok()).collect();
+        let numbers: Option<Vec<f64>> = self.items.iter().map(|item| number::parse(item).ok()).collect();
         let numbers = numbers.filter(|all| self.list == (N > 1) && all.iter().all(|n| n.is_finite()));
         numbers.and_then(|all| all.try_into().ok()).ok_or_else(|| self.fault(key, right))
     }
@@ -90,6 +94,9 @@ pub(super) fn values(text: &str) -> Result<Vec<(String, Value)>, Fault> {
 }
 
 fn push(values: &mut Vec<(String, Value)>, key: String, value: Value) -> Result<(), Fault> {
+    if values.len() > KEYS_MAX {
+        return Err(Fault::new(Place::line(value.line), format!("more than {KEYS_MAX} keys; is this a map?")));
+    }
     if values.iter().any(|(k, _)| *k == key) {
         return Err(Fault::new(Place::line(value.line), format!("{key} a second time")));
     }

@@ -4,6 +4,7 @@
 //! and SVG's own notations are those that `usvg` stands on. `usvg` itself computes in f32 and passes over what it cannot
 //! read, so the tree is walked here.
 
+mod bounds;
 mod css_transform;
 mod label;
 mod length;
@@ -72,8 +73,13 @@ const DEFINITIONS: [&str; 20] = [
 /// painted is none; texts and images are none and are counted. The element with the id or the Inkscape label `anchor` marks
 /// the anchor by its middle, painted or not.
 pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
+    bounds::check_entities(text)?;
+    bounds::check_tags(text)?;
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options).map_err(|e| syntax_fault(&e))?;
+    if let Some((node, what)) = bounds::vanishing(&document) {
+        return Err(fault_at(node, &what));
+    }
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
         let what = format!("not SVG: the outermost element is <{}>, not <svg>", root.tag_name().name());

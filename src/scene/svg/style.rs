@@ -102,7 +102,10 @@ pub(super) struct Styles<'a> {
 }
 
 /// How many looks at elements there may be: some seconds.
-const LOOKS_MAX: u64 = 1 << 27;
+const LOOKS_MAX: u64 = 1 << 26;
+
+/// How many bytes of an attribute are compared in the time of a look.
+const BYTES_A_LOOK: usize = 64;
 
 impl<'a> Styles<'a> {
     pub(super) fn of(document: &'a Document<'_>) -> Self {
@@ -160,8 +163,12 @@ struct Styled<'a, 'i, 'l>(Node<'a, 'i>, &'l Cell<u64>);
 impl Styled<'_, '_, '_> {
     /// Counts a look; once none is left, nothing is found any more.
     fn may_look(&self) -> bool {
-        self.1.set(self.1.get().saturating_sub(1));
+        self.charge(1);
         self.1.get() > 0
+    }
+
+    fn charge(&self, looks: usize) {
+        self.1.set(self.1.get().saturating_sub(looks as u64));
     }
 }
 
@@ -179,7 +186,12 @@ impl Element for Styled<'_, '_, '_> {
     }
 
     fn attribute_matches(&self, local_name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.may_look() && self.0.attribute(local_name).is_some_and(|value| operator.matches(value))
+        if !self.may_look() {
+            return false;
+        }
+        let Some(value) = self.0.attribute(local_name) else { return false };
+        self.charge(value.len() / BYTES_A_LOOK);
+        operator.matches(value)
     }
 
     fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
@@ -237,9 +249,11 @@ mod tests {
         };
         let rules = |count: usize| (0..count).map(|i| format!(".c{i}{{display:none}}")).collect::<String>();
         assert!(!spent(&rules(1000), &"<g/>".repeat(10_000)));
-        assert!(spent(&rules(20_000), &"<g/>".repeat(20_000)));
+        assert!(spent(&rules(10_000), &"<g/>".repeat(10_000)));
         // Which of its ancestors are meant by each of eight names can be tried in very many ways.
         let deep = format!("{}<path d=''/>{}", "<g>".repeat(100), "</g>".repeat(100));
         assert!(spent("a g g g g g g g g path {display:none}", &deep));
+        let class = format!("<g class=\"{}\"/>", "x ".repeat(1_000_000));
+        assert!(!spent(&rules(500), &class) && spent(&rules(5000), &class));
     }
 }

@@ -13,6 +13,7 @@ use super::geographic;
 use super::lines::Lines;
 use super::{Object, Scene, excerpt};
 use crate::geometry::check_point;
+use crate::number::{self, NumberFault, VANISHES};
 use crate::read_error::{Fault, Place};
 use statements::Statements;
 
@@ -26,6 +27,17 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     let mut count = 0;
     while let Some(statement) = statements.next()? {
         let place = Place::line(statement.line);
+        if let Some((at, fault)) = number::wrong(statement.geometry) {
+            let (before, word) = (&statement.geometry[..at.start], excerpt(&statement.geometry[at]));
+            let line = statement.line + before.matches('\n').count() as u64;
+            let what = match fault {
+                NumberFault::NoNumber => {
+                    format!("not WKT: {word:?} stands where a number must stand, such as -1.25 or 3e-7")
+                }
+                NumberFault::Vanishes => format!("{word:?} is {VANISHES}"),
+            };
+            return Err(Fault::new(Place::line(line), what));
+        }
         let geometry = Wkt::<f64>::from_str(&with_signs(statement.geometry))
             .map_err(|e| Fault::new(place.clone(), format!("not WKT: {e}: {:?}", excerpt(statement.geometry))))?;
         found.geometry(&geometry, &place)?;

@@ -14,6 +14,7 @@ mod process;
 mod queries;
 mod reports;
 mod results;
+mod safety;
 mod scenes;
 mod schema;
 mod study;

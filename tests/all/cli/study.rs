@@ -280,10 +280,10 @@ fn given_traces_are_studied_too() {
 fn faults_in_a_study_are_named() {
     let folder = study();
     for (from, to, parts) in [
-        ("steps = 200", "stpes = 200", ["s.toml: line", "did you mean `steps`?"]),
-        ("\"rooms\"", "\"romms\"", ["scene.built_in", "romms"]),
-        ("step = 0.25", "step = -1.0", ["step", "-1"]),
-        ("block = 250", "block = 0", ["s.toml: run", "at least 1"]),
+        ("steps = 200", "stpes = 200", ["s.toml: line 8: walk.stpes: ", "did you mean `steps`?"]),
+        ("\"rooms\"", "\"romms\"", ["s.toml: line 3: scene.built_in", "romms"]),
+        ("step = 0.25", "step = -1.0", ["s.toml: line 7: walk.step", "-1 is no length"]),
+        ("block = 250", "block = 0", ["s.toml: line 10: run", "at least 1"]),
         ("sample = 3", "sample = 0", ["anchor", "1 to 1024"]),
     ] {
         folder.write("s.toml", STUDY.replacen(from, to, 1));

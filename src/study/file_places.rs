@@ -1,0 +1,190 @@
+//! Where in a study's file a fault lies: the key, and the line in which it stands.
+
+use std::ops::Range;
+
+use serde::Deserialize;
+use toml::de::{DeTable, DeValue};
+
+use super::plan::Plan;
+use crate::number::{self, NumberFault, VANISHES};
+
+/// Among how many keys the one at fault is looked for.
+const KEYS_MAX: usize = 200;
+
+/// A key of the file.
+struct Key {
+    /// With the tables in which it lies: `walk.step`.
+    name: String,
+    /// From its beginning to the end of its value.
+    span: Range<usize>,
+    /// Whether its value is no table.
+    leaf: bool,
+}
+
+/// A message with the key and the line at fault and, for an unknown key, the nearest known one.
+pub(super) fn explain(text: &str, error: &toml::de::Error) -> String {
+    let message = error.message();
+    let keys = keys(text);
+    let at = error.span().map(|span| span.start.min(text.len()));
+    let Ok(document) = text.parse::<toml::Table>() else {
+        return format!("{}{message}", at.map_or(String::new(), |at| line(text, at)));
+    };
+    let within = |key: &&Key| at.is_some_and(|at| key.span.contains(&at));
+    // The parser knows the place of some faults as that of their table only.
+    let key = keys.iter().filter(|key| key.leaf).find(within).or_else(|| culprit(&document, message, &keys));
+    let key = key.or_else(|| keys.iter().rev().find(within));
+    let named: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
+    let nearest = match named.split_first() {
+        Some((&given, known)) if message.starts_with("unknown") => known
+            .iter()
+            .map(|k| (strsim::damerau_levenshtein(given, k), k))
+            .min()
+            .filter(|(distance, k)| *distance <= 1 + k.len() / 3)
+            .map(|(_, nearest)| format!("; did you mean `{nearest}`?")),
+        _ => None,
+    };
+    let place = key.map_or(String::new(), |key| format!("{}{}", line(text, key.span.start), key.name));
+    if message.contains("AnchorPlan") {
+        return format!("{place} must be [x, y], a list of such, or {{ sample = N }}");
+    }
+    let place = if place.is_empty() { place } else { place + ": " };
+    format!("{place}{message}{}", nearest.unwrap_or_default())
+}
+
+/// The same fault with the line of the key with whose name it begins, if `text` has such a key.
+pub(super) fn located(text: &str, fault: String) -> String {
+    let name = fault.split(": ").next().unwrap_or_default();
+    let tables = std::iter::successors(Some(name), |name| name.rsplit_once('.').map(|(table, _)| table));
+    let keys = keys(text);
+    // A key that the file leaves out belongs into its table.
+    let key = tables.into_iter().find_map(|name| keys.iter().find(|key| key.name == name));
+    key.map_or(String::new(), |key| line(text, key.span.start)) + &fault
+}
+
+/// What is said of the first number of the file that would be rounded to 0.
+pub(super) fn vanishing(text: &str) -> Option<String> {
+    fn within<'v>(value: &'v DeValue<'_>) -> Option<&'v str> {
+        match value {
+            DeValue::Float(float) => {
+                let digits = float.as_str();
+                (number::parse(&digits.replace('_', "")) == Err(NumberFault::Vanishes)).then_some(digits)
+            }
+            DeValue::Array(items) => items.iter().find_map(|item| within(item.get_ref())),
+            _ => None,
+        }
+    }
+    fn find(table: &DeTable<'_>, outer: &str) -> Option<String> {
+        table.iter().find_map(|(key, value)| {
+            let name = format!("{outer}{}", key.get_ref());
+            match value.get_ref().as_table() {
+                Some(inner) => find(inner, &format!("{name}.")),
+                None => within(value.get_ref()).map(|digits| format!("{name}: {digits} is {VANISHES}")),
+            }
+        })
+    }
+    find(DeTable::parse_recoverable(text).0.get_ref(), "")
+}
+
+/// The key without which the fault is another one, or none.
+fn culprit<'k>(document: &toml::Table, message: &str, keys: &'k [Key]) -> Option<&'k Key> {
+    let fault = |document: &toml::Table| {
+        Plan::deserialize(toml::Value::Table(document.clone())).err().map(|e| e.message().to_owned())
+    };
+    let whole = fault(document);
+    // How surely a key is at fault: without it nothing is, or nothing but that it is missing; or another fault comes first.
+    let decides = |key: &Key| {
+        let mut names: Vec<&str> = key.name.split('.').collect();
+        let last = names.pop().unwrap_or_default();
+        if message.starts_with(&format!("unknown field `{last}`")) {
+            return Some(0);
+        }
+        let mut rest = document.clone();
+        let table = names.iter().try_fold(&mut rest, |table, name| table.get_mut(*name)?.as_table_mut());
+        table.and_then(|table| table.remove(last))?;
+        match fault(&rest) {
+            same if same == whole => None,
+            None => Some(0),
+            Some(other) => Some(u8::from(other != format!("missing field `{last}`"))),
+        }
+    };
+    // What is missing is so in a table. Without its kind nothing else is said of a walk, nor without a whole section.
+    let missing = message.starts_with("missing");
+    let rank = |key: &Key| match (key.leaf, key.name.contains('.')) {
+        (true, _) if !key.name.ends_with(".kind") => 0,
+        (false, true) => 1,
+        (true, _) => 2,
+        (false, false) => 3,
+    };
+    let mut candidates: Vec<&Key> = keys.iter().filter(|key| !(missing && key.leaf)).collect();
+    candidates.sort_by_key(|key| rank(key));
+    // All are tried; no person writes so many.
+    candidates.truncate(KEYS_MAX);
+    let surely = candidates.into_iter().filter_map(|key| Some((decides(key)?, key)));
+    surely.min_by_key(|(doubt, _)| *doubt).map(|(_, key)| key)
+}
+
+/// All keys, in the order in which they stand.
+fn keys(text: &str) -> Vec<Key> {
+    fn gather(table: &DeTable<'_>, outer: &str, keys: &mut Vec<Key>) {
+        for (key, value) in table {
+            let name = format!("{outer}{}", key.get_ref());
+            let inner = value.get_ref().as_table();
+            keys.push(Key { name: name.clone(), span: key.span().start..value.span().end, leaf: inner.is_none() });
+            if let Some(inner) = inner {
+                gather(inner, &format!("{name}."), keys);
+            }
+        }
+    }
+    let mut keys = Vec::new();
+    gather(DeTable::parse_recoverable(text).0.get_ref(), "", &mut keys);
+    keys.sort_by_key(|key| key.span.start);
+    keys
+}
+
+fn line(text: &str, at: usize) -> String {
+    format!("line {}: ", text[..at].matches('\n').count() + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of the fourth line, where it is this one.
+    fn fault(wrong: &str) -> String {
+        let head = "[scene]\nbuilt_in = \"rooms\"\n\n";
+        let text = format!("{head}{wrong}\n");
+        Plan::parse(&text).unwrap_err().what
+    }
+
+    #[test]
+    fn keys_and_lines_are_the_true_ones() {
+        let walk = "[walk]\nkind = \"uniform\"\nsteps = 5\n";
+        for (text, expected) in [
+            (format!("{walk}step = \"x\""), "line 7: walk.step: invalid type: string \"x\", expected f64"),
+            (format!("{walk}step = 1.0\nstpes = 3"), "line 8: walk.stpes: unknown field `stpes`"),
+            (walk.replace("uniform", "unifrom"), "line 5: walk.kind: unknown variant `unifrom`"),
+            (walk.to_owned(), "line 4: walk: missing field `step`"),
+            (format!("{walk}step = 1.0\nturn = 3.0"), "line 8: walk.turn: unknown field `turn`"),
+            (format!("{walk}step = 1.0\n[run]\nblock = 10\ntraces = -1"), "line 10: run.traces: invalid value"),
+            (format!("{walk}step = 1.0\n[run]\nblock = 10\ntraces = 0"), "line 8: run: `traces` and `block`"),
+            (format!("{walk}step = 1.0\nat_walls = \"jump\""), "line 8: walk.at_walls: unknown variant `jump`"),
+            (format!("{walk}step = -1.0"), "line 7: walk.step: -1 is no length"),
+            (format!("{walk}step = 1.0\n[tallies]\nlimits = [1.0, 'a']"), "line 9: tallies.limits: invalid type"),
+            (format!("{walk}step = 1.0\nwalk.x = 1"), "line 8: walk.walk: unknown field `walk`"),
+            (format!("{walk}step = 1e-400"), "line 7: walk.step: 1e-400 is too small"),
+            (format!("{walk}step = 1.0 1"), "line 7: "),
+            (format!("{walk}step = 1.0\nsteps = 7"), "line 8: duplicate key"),
+        ] {
+            let what = fault(&text);
+            assert!(what.starts_with(expected), "{text}\n{what}\n{expected}");
+        }
+        let what =
+            Plan::parse("[scene]\nfile = \"a.wkt\"\nanchor = \"here\"\n[walk]\nkind = \"given\"\nfile = \"a.csv\"");
+        assert_eq!(what.unwrap_err().what, "line 3: scene.anchor must be [x, y], a list of such, or { sample = N }");
+        let walk = walk.replace("steps", "stpes");
+        let what = Plan::parse(&format!("[scene]\nbuilt_in = 'rooms'\nanchor = {{ sample = 3 }}\n{walk}step = 1.0"));
+        assert!(what.unwrap_err().what.starts_with("line 6: walk.stpes: unknown field `stpes`"));
+        let what = Plan::parse("scene = { file = \"a.wkt\",\n anchor = [0.0,\n 1e-400] }\nwalk = { kind = \"given\" }");
+        assert!(what.unwrap_err().what.starts_with("line 4: walk: missing field `file`"));
+    }
+}
