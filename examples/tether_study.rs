@@ -5,6 +5,7 @@
 use std::convert::Infallible;
 use std::error::Error;
 use std::path::Path;
+use std::sync::Mutex;
 
 use tautline::engine::{Cpu, Engine, Job};
 use tautline::study::{Plan, Shard, State, Study, run};
@@ -28,13 +29,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let study = Study::open(Plan::parse(PLAN)?, Path::new("."))?;
     // One for each anchor; here there is but one.
     let mut engines: Vec<Box<dyn Engine + '_>> = study.models().iter().map(|m| Box::new(Cpu::new(m)) as _).collect();
-    let mut state = State::new(&study, Shard::WHOLE);
-    run(&study, &mut engines, &mut state, &Job::new(), |state, _, _| {
+    let state = Mutex::new(State::new(&study, Shard::WHOLE));
+    run(&study, &mut engines, &state, &Job::new(), |state, _, _| {
         eprintln!("{} blocks are done", state.done());
         Ok::<(), Infallible>(())
     })?;
 
-    let summary = state.summary(&study);
+    let summary = state.into_inner()?.summary(&study);
     let longest = summary.scalars.iter().find(|s| s.name == "max_length").ok_or("lengths are always told")?;
     println!("the mean of the greatest length: {:.2}", longest.mean.value);
     for quantile in &longest.quantiles {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs all tests: formatting, lints, documentation, then the tests themselves.
-# Installs the software Vulkan driver where it is missing, since the GPU engine is tested on it.
+# Installs two software Vulkan drivers where they are missing, since the GPU engine is tested on both: Mesa's lavapipe, and
+# SwiftShader, which comes with Chromium. They are compilers of different make, so each sees what the other may hide.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -33,6 +34,31 @@ if [ "$(uname)" = Linux ] && ! { has_driver && has_loader; }; then
     fi
 fi
 
+# Where SwiftShader is described, for the Vulkan loader.
+swiftshader() {
+    local file
+    for file in "${TAUTLINE_SWIFTSHADER:-}" /usr/lib/chromium /usr/lib64/chromium-browser /usr/lib64/chromium /opt/google/chrome; do
+        [ -d "$file" ] && file="$file/vk_swiftshader_icd.json"
+        [ -f "$file" ] && { echo "$file"; return; }
+    done
+    return 1
+}
+
+if [ "$(uname)" = Linux ] && ! swiftshader >/dev/null; then
+    if command -v apt-get >/dev/null; then
+        say "installing SwiftShader (chromium)"
+        root=()
+        [ "$(id -u)" -eq 0 ] || root=(sudo)
+        "${root[@]}" apt-get update -qq
+        "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq chromium >/dev/null
+    fi
+    if ! swiftshader >/dev/null; then
+        echo "The tests need the software Vulkan driver SwiftShader: a file vk_swiftshader_icd.json, which Chromium and Chrome bring." >&2
+        echo "Install one of them, or name that file in TAUTLINE_SWIFTSHADER, and run this again." >&2
+        exit 1
+    fi
+fi
+
 say "formatting"
 cargo fmt --check
 cargo fmt --check --manifest-path tests/fuzz/Cargo.toml
@@ -46,7 +72,16 @@ say "documentation's examples"
 cargo test --release --doc --quiet
 say "tests"
 cargo test --release --lib --bins --tests
+if [ "$(uname)" = Linux ]; then
+    say "tests that need a device, on SwiftShader"
+    driver="$(swiftshader)"
+    # Older loaders know the second name only. The tests themselves see to it that this is the adapter that they are on.
+    VK_DRIVER_FILES="$driver" VK_ICD_FILENAMES="$driver" TAUTLINE_TEST_ADAPTER=SwiftShader cargo test --release --test all -- \
+        arithmetic:: batch:: cli::adapters:: cli::engines:: decide:: fast:: filter:: golden:: random:: required:: shader::
+fi
 say "a study's page in a browser"
 tests/page.sh
 say "a trace that plays in a browser"
 tests/animation.sh
+say "kills at random system calls, and a full disk"
+tests/faults.sh 12

@@ -1,7 +1,7 @@
 //! `tautline adapters`.
 
 use serde_json::{Value, json};
-use tautline::gpu::{AdapterKind, Arithmetic, GpuError, SOFTWARE_HINT, open_all};
+use tautline::gpu::{AdapterKind, Arithmetic, Computed, GpuError, SOFTWARE_HINT, driver_faults, open_all};
 
 use super::failure::Failure;
 use super::{print, print_json};
@@ -23,10 +23,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             .iter()
             .map(|(a, f32)| {
                 let (name, kind, backend, driver) = (&a.name, a.kind.to_string(), &a.backend, &a.driver);
-                json!({"name": name, "type": kind, "backend": backend, "driver": driver, "f32": described(f32)})
+                json!({"number": a.number, "name": name, "type": kind, "backend": backend, "driver": driver, "f32": described(f32)})
             })
             .collect();
-        return print_json(&json!({ "adapters": list }));
+        return print_json(&json!({ "adapters": list, "driver_faults": driver_faults() }));
     }
     let all: Vec<_> = opened.iter().map(|(summary, _)| summary).collect();
     let mut text = String::new();
@@ -34,11 +34,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         text += "No GPU adapter was found.\n";
     } else {
         let width = all.iter().map(|a| a.name.chars().count()).max().unwrap_or(0).max(7);
-        text += &format!("{:width$}  {:10}  {:7}  driver\n", "adapter", "type", "backend");
+        text += &format!("number  {:width$}  {:10}  {:7}  driver\n", "adapter", "type", "backend");
         for (a, f32) in &opened {
-            text += &format!("{:width$}  {:10}  {:7}  {}\n", a.name, a.kind, a.backend, a.driver);
-            text += &format!("    f32: {}\n", words(f32));
+            text += &format!("{:6}  {:width$}  {:10}  {:7}  {}\n", a.number, a.name, a.kind, a.backend, a.driver);
+            text += &format!("        f32: {}\n", words(f32));
         }
+    }
+    for fault in driver_faults() {
+        text += &format!("\nWarning: {fault}.\n");
+    }
+    if all.len() > 1 {
+        text += "\n`--adapter` takes part of a name, or a number.\n";
     }
     if !all.iter().any(|a| a.kind.is_real()) {
         text += "\nThere is no real GPU here: `--engine auto` takes the CPU.\n";
@@ -55,10 +61,16 @@ fn described(found: &Result<Arithmetic, GpuError>) -> Value {
         Ok(f32) => json!({
             "certified": f32.fault.is_none(), "fault": f32.fault, "largest_error": f32.largest_error,
             "rounds_to_nearest": f32.rounds_to_nearest, "fuses": f32.fuses, "flushes": f32.flushes,
-            "reassociates": f32.reassociates,
+            "shapes": shapes(f32),
         }),
         Err(error) => json!({"certified": false, "fault": error.to_string()}),
     }
+}
+
+/// How each shape of sums and products is computed, by shape.
+fn shapes(f32: &Arithmetic) -> Value {
+    let all = f32.shapes.iter().map(|(shape, computed)| ((*shape).to_owned(), json!(computed.to_string())));
+    Value::Object(all.collect())
 }
 
 /// The same for people.
@@ -73,7 +85,13 @@ fn words(found: &Result<Arithmetic, GpuError>) -> String {
     let rounds = if f32.rounds_to_nearest { "rounds to nearest" } else { "rounds either way" };
     let fuses = if f32.fuses { "fuses" } else { "fuses nothing" };
     let flushes = if f32.flushes { "flushes subnormals" } else { "keeps subnormals" };
-    let order = if f32.reassociates { "reorders sums" } else { "keeps the order of sums" };
+    let rewritten = f32.shapes.iter().filter(|(_, computed)| *computed > Computed::Fused);
+    let rewritten: Vec<&str> = rewritten.map(|(shape, _)| *shape).collect();
+    let order = if rewritten.is_empty() {
+        "computes all sums as they are written".to_owned()
+    } else {
+        format!("rewrites {} of {} shapes of sums: {}", rewritten.len(), f32.shapes.len(), rewritten.join(", "))
+    };
     let error = 100.0 * f32.largest_error;
     format!(
         "fit for exact ropes, with errors of at most {error:.0} % of the bound; {rounds}, {fuses}, {flushes}, {order}"

@@ -2,7 +2,7 @@
 
 use std::ops::{Range, RangeInclusive};
 use std::panic::resume_unwind;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
@@ -12,16 +12,12 @@ use tautline::scene::Model;
 use tautline::trace::{SettledTrace, Trace, TraceReader};
 
 use super::failure::Failure;
-use super::interrupt;
 use super::trade::Terms;
 
 /// How many points the traces of a batch have together at most. A batch of long traces has fewer of them, so that memory
 /// stays bounded: 64 MB of points for each of the two batches under way: one that is read and checked, one that is
 /// evaluated. Engines that can make use of more traces at once than others get up to eight times as much.
 const POINTS: RangeInclusive<usize> = 1 << 22..=1 << 25;
-
-/// How often a wait for the next batch looks for Ctrl-C.
-const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Where traces come from.
 pub(crate) enum Source {
@@ -96,17 +92,13 @@ impl Batches {
 
     /// The next batch; `None` after the last.
     pub(crate) fn next(&mut self) -> Result<Option<Batch>, Failure> {
-        loop {
-            interrupt::check()?;
-            match self.waiting.recv_timeout(PATIENCE) {
-                Ok(batch) => return batch.map(Some),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => {
-                    if let Some(Err(panic)) = self.thread.take().map(JoinHandle::join) {
-                        resume_unwind(panic);
-                    }
-                    return Ok(None);
+        match self.waiting.recv() {
+            Ok(batch) => batch.map(Some),
+            Err(_) => {
+                if let Some(Err(panic)) = self.thread.take().map(JoinHandle::join) {
+                    resume_unwind(panic);
                 }
+                Ok(None)
             }
         }
     }

@@ -7,7 +7,6 @@ use tautline::scene::read_scene_with;
 
 use super::failure::Failure;
 use super::input::{FileArgs, note};
-use super::interrupt::{self, Writing};
 use super::print;
 use super::summary::place;
 
@@ -24,13 +23,16 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::listen()?;
     let scene = read_scene_with(&args.from, &args.file.options())?;
     note(&args.from, &scene);
-    let writing = Writing::begin();
-    interrupt::check()?;
     write_scene(&args.to, &scene)?;
-    writing.end()?;
+    let is_text = args.to.extension().is_some_and(|e| e.eq_ignore_ascii_case("wkt"));
+    if is_text && !scene.is_bare() {
+        say!(
+            "note: {}: well-known text has no place for labels, layers and what is solid; GeoJSON has",
+            args.to.display()
+        );
+    }
     let anchor = scene.anchor().map_or("no anchor".to_owned(), |a| format!("anchor {}", place(a)));
     print(&format!(
         "{}: {} walls, {} vertices, {anchor}\n",

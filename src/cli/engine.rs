@@ -3,7 +3,7 @@
 use anyhow::anyhow;
 use clap::ValueEnum;
 use tautline::engine::{Cpu, Engine, FastGpu, Funnel, Gpu, Note, Precision, Reference, WINDOW};
-use tautline::gpu::{AdapterChoice, Device, GpuError};
+use tautline::gpu::{AdapterChoice, Device, GpuError, driver_faults};
 use tautline::scene::Model;
 
 use super::failure::Failure;
@@ -14,7 +14,7 @@ pub(crate) struct EngineArgs {
     /// What computes the ropes
     #[arg(long, value_enum, default_value = "auto")]
     engine: EngineName,
-    /// Which GPU: part of its name, or `software`; implies `--engine gpu`
+    /// Which GPU: part of its name, its number in `tautline adapters`, or `software`; implies `--engine gpu`
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// Whether exact signs decide, or f32 alone; `fast` implies `--engine gpu` [default: certified]
@@ -108,7 +108,10 @@ impl EngineArgs {
             }
             (EngineName::Auto, None) => Ok(self.gpu(&AdapterChoice::Real, precision, model).unwrap_or_else(|error| {
                 let why = match error {
-                    GpuError::NoAdapter { .. } => "there is no real GPU here".to_owned(),
+                    GpuError::NoAdapter { .. } => {
+                        let faults = driver_faults().into_iter().map(|fault| format!(", and {fault}"));
+                        "there is no real GPU here".to_owned() + &faults.collect::<String>()
+                    }
                     other => other.to_string(),
                 };
                 say!("engine: cpu, since {why} (`tautline adapters` lists what there is)");
@@ -124,6 +127,7 @@ impl EngineArgs {
     fn gpu<'m>(&self, choice: &AdapterChoice, precision: Precision, model: &'m Model) -> Result<Opened<'m>, GpuError> {
         let device = Device::open(choice)?;
         let on = device.summary().to_string();
+        let notes = notes(choice, &device);
         let engine: Box<dyn Engine> = match (precision, self.keep_all) {
             (Precision::Certified, false) => Box::new(Gpu::new(device, model)?.window(self.window())),
             (Precision::Certified, true) => Box::new(Gpu::new(device, model)?.window(self.window()).keep_all()),
@@ -131,6 +135,7 @@ impl EngineArgs {
             (Precision::Fast, true) => Box::new(FastGpu::new(device, model)?.window(self.window()).keep_all()),
         };
         say!("engine: gpu on {on}");
+        notes.iter().for_each(|note| say!("{note}"));
         if precision == Precision::Fast {
             say!("note: precision fast: f32 decides alone, so ropes can be wrong");
         }
@@ -157,4 +162,26 @@ fn threads() -> String {
 /// The adapter that `--adapter` means.
 pub(super) fn named(adapter: &str) -> AdapterChoice {
     if adapter == "software" { AdapterChoice::Software } else { AdapterChoice::Named(adapter.to_owned()) }
+}
+
+/// What to say of the device that was taken: where another was meant, perhaps.
+pub(super) fn notes(choice: &AdapterChoice, device: &Device) -> Vec<String> {
+    let taken = device.summary();
+    let mut notes: Vec<String> = driver_faults().into_iter().map(|fault| format!("warning: {fault}")).collect();
+    match choice {
+        AdapterChoice::Software if !taken.is_lavapipe() => {
+            notes.push(format!("note: Mesa's lavapipe is not here, so the software adapter is {}", taken.name))
+        }
+        AdapterChoice::Named(words) if !device.passed_over().is_empty() => {
+            let others: Vec<String> = device.passed_over().iter().map(|a| format!("{}: {a}", a.number)).collect();
+            notes.push(format!(
+                "note: {words:?} is in the names of other adapters too; this is number {}, and --adapter with its number takes \
+                 {}",
+                taken.number,
+                others.join("; ")
+            ));
+        }
+        _ => {}
+    }
+    notes
 }

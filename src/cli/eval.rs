@@ -13,7 +13,6 @@ use super::batches::{Batch, Batches};
 use super::engine::EngineArgs;
 use super::failure::Failure;
 use super::input::InputArgs;
-use super::interrupt::{self, Writing};
 use super::output::Output;
 use super::progress::{Progress, with_progress};
 use super::summary::{Summary, Times, dropped};
@@ -50,12 +49,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::listen()?;
-    // Trying whether a file can be written makes one for a moment.
-    let writing = Writing::begin();
-    interrupt::check()?;
     check_outputs(args)?;
-    writing.end()?;
     if let (Some(queries), Some(scene)) = (&args.queries, &args.input.scene) {
         return super::queries::run(scene, queries, args.out.as_deref(), args.json);
     }
@@ -72,6 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.trade.is_any() {
         summary.trade(args.trade, model);
     }
+    summary.label(model);
     let mut times = evaluate(args, model, batches, &mut *engine, &mut summary)?;
     summary.learn(&*engine);
     times.total = start.elapsed();
@@ -86,8 +81,7 @@ fn evaluate(
     engine: &mut dyn Engine,
     summary: &mut Summary,
 ) -> Result<Times, Failure> {
-    let job = Arc::new(Job::new());
-    interrupt::stops(&job);
+    let job = Job::new();
     let mut times = Times::default();
     let mut violations = args.input.violations();
     let notes = args.trade.notes(engine.precision());
@@ -101,7 +95,7 @@ fn evaluate(
             let start = Instant::now();
             let records = engine.evaluate(&settled, &job)?;
             times.evaluated += start.elapsed();
-            summary.add(&settled, &records);
+            summary.add(model, &settled, &records);
             output.write(records)?;
         }
         violations.finish();

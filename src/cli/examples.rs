@@ -9,6 +9,7 @@ pub(super) const EVAL: &str = "Examples:
 
 pub(super) const CHECK: &str = "Examples:
   tautline check --scene plan.geojson
+  tautline check --scene plan.dxf --without-layer TEXT --picture plan.svg
   tautline check --scene plan.geojson --traces drags.csv
   tautline check --scene plan.geojson --traces drags.csv --on-violation flag --json";
 

@@ -46,8 +46,13 @@ impl Failure {
     }
 
     /// Stopped by Ctrl-C.
-    pub(crate) fn interrupted() -> Self {
-        Failure { code: 130, error: anyhow::anyhow!("stopped; nothing was written") }
+    pub(crate) fn interrupted(is_written: bool) -> Self {
+        let what = if is_written {
+            "stopped; files that were whole by then are written"
+        } else {
+            "stopped; nothing was written"
+        };
+        Failure { code: 130, error: anyhow::anyhow!(what) }
     }
 
     /// Stopped early, with a checkpoint from which to go on.
@@ -62,6 +67,10 @@ impl Failure {
 
     pub(crate) fn code(&self) -> ExitCode {
         ExitCode::from(self.code)
+    }
+
+    pub(crate) fn number(&self) -> u8 {
+        self.code
     }
 }
 
@@ -111,7 +120,7 @@ impl From<EngineError> for Failure {
     fn from(error: EngineError) -> Self {
         match error {
             EngineError::Gpu(error) => error.into(),
-            EngineError::Stopped => Failure::interrupted(),
+            EngineError::Stopped => Failure::interrupted(false),
             EngineError::Unfit { .. } => Failure::input(error.into()),
         }
     }

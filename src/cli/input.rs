@@ -7,7 +7,8 @@ use glam::DVec2;
 use tautline::escape::{escaped, escaped_path};
 use tautline::example::{Walker, floor_plan};
 use tautline::parse_number as number;
-use tautline::scene::{AnchorError, Model, Scene, SceneOptions, Unknown, read_scene_with};
+use tautline::scene::{AnchorError, Model, Ros, Scene, SceneOptions, Unknown, read_scene_with};
+use tautline::study::anchor_warnings;
 use tautline::trace::TraceReader;
 
 use super::batches::Source;
@@ -46,6 +47,24 @@ pub(crate) struct FileArgs {
     /// What unknown cells of a map_server's map are
     #[arg(long, value_enum, default_value = "free")]
     unknown: Cells,
+    /// Which ROS's map_server says what cells of a map are occupied: nav2's of ROS 2, or that of ROS 1
+    #[arg(long, value_name = "1|2", default_value = "2", value_parser = ros)]
+    ros: Ros,
+    /// Take the walls of this layer only; may be given several times. Layers are those of a .dxf, layers and groups of an
+    /// .svg, and of .geojson what the property `layer` says, or as KEY=VALUE what the property KEY does
+    #[arg(long = "layer", value_name = "NAME")]
+    layers: Vec<String>,
+    /// Leave the walls of this layer out; may be given several times
+    #[arg(long = "without-layer", value_name = "NAME")]
+    without_layers: Vec<String>,
+}
+
+fn ros(text: &str) -> Result<Ros, String> {
+    match text {
+        "1" => Ok(Ros::One),
+        "2" => Ok(Ros::Two),
+        _ => Err("give 1 or 2".to_owned()),
+    }
 }
 
 /// What cells are.
@@ -63,7 +82,13 @@ impl FileArgs {
             Cells::Free => Unknown::Free,
             Cells::Blocked => Unknown::Blocked,
         };
-        SceneOptions { flatten: self.flatten, unknown }
+        SceneOptions {
+            flatten: self.flatten,
+            unknown,
+            ros: self.ros,
+            layers: self.layers.clone(),
+            without_layers: self.without_layers.clone(),
+        }
     }
 }
 
@@ -77,6 +102,13 @@ pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
 pub(crate) fn note(path: &Path, scene: &Scene) {
     for note in scene.notes() {
         say!("note: {}: {}", escaped_path(path), escaped(note));
+    }
+}
+
+/// Warns of an anchor that is hardly where it was meant to be.
+pub(crate) fn warn(name: &str, model: &Model) {
+    for warning in anchor_warnings(model) {
+        say!("warning: {name}: {warning}");
     }
 }
 
@@ -109,16 +141,21 @@ impl InputArgs {
         }
     }
 
-    /// Ties the rope in `scene`.
+    /// Ties the rope in `scene`. Warns of an anchor that is hardly where it was meant to be.
     pub(crate) fn tie(&self, scene: Scene) -> Result<Model, Failure> {
-        Model::new(scene, self.anchor).map_err(|error| match error {
-            AnchorError::Missing => Failure::input(anyhow!(
-                "{}: no anchor; give --anchor X,Y{}",
-                self.name(),
-                self.scene.as_deref().map_or("", how_to_mark)
-            )),
+        let model = Model::new(scene, self.anchor).map_err(|error| match error {
+            AnchorError::Missing => Failure::input(anyhow!("{}: no anchor; {}", self.name(), self.how_to_tie())),
             other => Failure::input(anyhow!("{}: {other}", self.name())),
-        })
+        })?;
+        if self.scene.is_some() {
+            warn(&self.name(), &model);
+        }
+        Ok(model)
+    }
+
+    /// How to say where the rope is tied.
+    pub(crate) fn how_to_tie(&self) -> String {
+        format!("give --anchor X,Y{}", self.scene.as_deref().map_or("", how_to_mark))
     }
 
     /// The traces given, or the example's.

@@ -1,79 +1,116 @@
-//! Ctrl-C: ends the process at once where nothing needs to be cleaned up, and in good order where files are half written.
+//! Ctrl-C, and a request to end: the process ends at once, in good order, whatever it is doing. That is done by the thread that
+//! hears of it, so that nothing has to be asked to stop: what is still at work is cut off.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use tautline::engine::Job;
+use tautline::output::abandon;
 
 use super::failure::Failure;
 
-static WRITING: AtomicBool = AtomicBool::new(false);
-static STOPPED: AtomicBool = AtomicBool::new(false);
+/// What is still to be done before the process ends. It must wait for whatever other threads change.
+pub(crate) enum Last {
+    /// Saves what there is, and makes what is said then, and the exit code.
+    Save(Box<dyn FnOnce() -> Failure + Send>),
+    /// Takes back what was done, once no file can appear any more.
+    TakeBack(Box<dyn FnOnce() + Send>),
+}
 
-/// What to stop when files are half written.
-static JOB: OnceLock<Arc<Job>> = OnceLock::new();
+static LAST: Mutex<Option<Last>> = Mutex::new(None);
 
-/// Listens for Ctrl-C from now on.
+fn last() -> MutexGuard<'static, Option<Last>> {
+    LAST.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Listens for Ctrl-C from now on, and for requests to end. Files under way vanish at them. What the process was started to
+/// ignore, by nohup say, it goes on to ignore.
 pub(crate) fn listen() -> Result<(), Failure> {
-    let heard = || {
-        STOPPED.store(true, Ordering::SeqCst);
-        JOB.get().into_iter().for_each(|job| job.stop());
-        if !WRITING.load(Ordering::SeqCst) {
-            say!("\nerror: {}", Failure::interrupted());
-            leave(130);
-        }
+    let ignored = ignored();
+    ctrlc::set_handler(end).map_err(|e| Failure::internal(e.into()))?;
+    ignore(&ignored);
+    Ok(())
+}
+
+/// The signals that are listened for and were ignored so far.
+#[cfg(unix)]
+#[allow(unsafe_code)] // there is no safe name for it
+fn ignored() -> Vec<libc::c_int> {
+    let is_ignored = |&signal: &libc::c_int| {
+        // SAFETY: all bits zero are a valid value of what is filled in; without a new action nothing is changed.
+        let mut action: libc::sigaction = unsafe { std::mem::zeroed() };
+        let asked = unsafe { libc::sigaction(signal, std::ptr::null(), &mut action) };
+        asked == 0 && action.sa_sigaction == libc::SIG_IGN
     };
-    ctrlc::set_handler(heard).map_err(|e| Failure::internal(e.into()))
+    [libc::SIGINT, libc::SIGTERM, libc::SIGHUP].into_iter().filter(is_ignored).collect()
+}
+
+#[cfg(unix)]
+#[allow(unsafe_code)] // there is no safe name for it
+fn ignore(signals: &[libc::c_int]) {
+    for &signal in signals {
+        // SAFETY: no handler is installed that could do harm.
+        unsafe { libc::signal(signal, libc::SIG_IGN) };
+    }
+}
+
+#[cfg(not(unix))]
+fn ignored() {}
+
+#[cfg(not(unix))]
+fn ignore(_: &()) {}
+
+fn end() {
+    // Held to the end, so that nobody takes what is done here for something to go on from.
+    let mut last = last();
+    let failure = match last.take() {
+        Some(Last::Save(save)) => {
+            let failure = save();
+            abandon();
+            failure
+        }
+        Some(Last::TakeBack(take_back)) => {
+            abandon();
+            take_back();
+            Failure::interrupted(false)
+        }
+        None => Failure::interrupted(abandon()),
+    };
+    // Where the terminal has gone there is nobody to tell.
+    say!("\nerror: {failure}");
+    leave(failure.number());
 }
 
 /// Ends the process with that exit code and nothing else. What other threads do must not be taken from under them: a driver that
 /// is being loaded while the handlers of a usual exit run brings the process down with a signal.
 #[cfg(unix)]
 #[allow(unsafe_code)] // there is no safe name for it
-fn leave(code: i32) -> ! {
+fn leave(code: u8) -> ! {
     // SAFETY: it neither returns nor touches memory. Nothing is buffered: stderr is not, and stdout is written at once.
-    unsafe { libc::_exit(code) }
+    unsafe { libc::_exit(code.into()) }
 }
 
 /// Ends the process with that exit code.
 #[cfg(not(unix))]
-fn leave(code: i32) -> ! {
-    std::process::exit(code)
+fn leave(code: u8) -> ! {
+    std::process::exit(code.into())
 }
 
-/// Has Ctrl-C stop `job`, the one evaluation of this process.
-pub(crate) fn stops(job: &Arc<Job>) {
-    let _ = JOB.set(job.clone());
-    // It may have come before there was a job.
-    if STOPPED.load(Ordering::SeqCst) {
-        job.stop();
+/// While one of these lives, Ctrl-C does something before the process ends. There is one at a time.
+pub(crate) struct Guard;
+
+impl Guard {
+    pub(crate) fn new(doing: Last) -> Self {
+        *last() = Some(doing);
+        Guard
+    }
+
+    /// Has something else done from now on.
+    pub(crate) fn change(&self, doing: Last) {
+        *last() = Some(doing);
     }
 }
 
-/// An error once Ctrl-C was pressed, so that half-written files are dropped.
-pub(crate) fn check() -> Result<(), Failure> {
-    if STOPPED.load(Ordering::SeqCst) { Err(Failure::interrupted()) } else { Ok(()) }
-}
-
-/// While one of these lives, Ctrl-C waits for [`check`]. One that has just begun must be checked before
-/// a file is made: Ctrl-C may have come a moment earlier.
-pub(crate) struct Writing;
-
-impl Writing {
-    pub(crate) fn begin() -> Self {
-        WRITING.store(true, Ordering::SeqCst);
-        Writing
-    }
-
-    /// Ends it when all files are gone again: an error if Ctrl-C was pressed meanwhile.
-    pub(crate) fn end(self) -> Result<(), Failure> {
-        WRITING.store(false, Ordering::SeqCst);
-        check()
-    }
-}
-
-impl Drop for Writing {
+impl Drop for Guard {
     fn drop(&mut self) {
-        WRITING.store(false, Ordering::SeqCst);
+        *last() = None;
     }
 }

@@ -39,6 +39,14 @@ pub(crate) struct Look {
     pub width: Option<u32>,
 }
 
+impl Look {
+    /// A whole scene.
+    pub(crate) fn of_scene() -> Self {
+        let theme = ThemeArg::Auto;
+        Look { step: None, frames: None, animate: false, view: Part::All, rays: None, theme, width: None }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum ThemeArg {
     Auto,
@@ -116,8 +124,14 @@ impl Target {
     }
 }
 
-/// Draws, and writes what is drawn.
+/// Draws, writes what is drawn, and says so.
 pub(crate) fn write(target: &Target, drawing: &Drawing<'_>, look: &Look) -> Result<(), Failure> {
+    save(target, drawing, look)?;
+    print(&format!("wrote {}\n", target.path.display()))
+}
+
+/// Draws, and writes what is drawn.
+pub(crate) fn save(target: &Target, drawing: &Drawing<'_>, look: &Look) -> Result<(), Failure> {
     let theme = match look.theme {
         ThemeArg::Auto => Theme::Reader,
         ThemeArg::Light => Theme::Light,
@@ -141,8 +155,7 @@ pub(crate) fn write(target: &Target, drawing: &Drawing<'_>, look: &Look) -> Resu
             }
         }
     };
-    write_whole(&target.path, &bytes)?;
-    print(&format!("wrote {}\n", target.path.display()))
+    write_whole(&target.path, &bytes)
 }
 
 fn unpainted(error: PictureError) -> Failure {

@@ -89,17 +89,20 @@ pub(crate) fn run() -> ExitCode {
         Err(other) => return say::usage(&other),
     };
     // A panic is a bug of this program; its message is printed by then.
-    let outcome = catch_unwind(AssertUnwindSafe(|| match cli.command {
-        Command::Eval(args) => eval::run(&args),
-        Command::Study(args) => study::run(&args),
-        Command::Check(args) => check::run(&args),
-        Command::Draw(args) => draw::run(&args),
-        Command::Convert(args) => convert::run(&args),
-        Command::Bench(args) => bench::run(&args),
-        Command::Tradeoff(args) => tradeoff::run(&args),
-        Command::Adapters(args) => adapters::run(&args),
-        Command::Completions(args) => manual::completions(&args),
-        Command::Man(args) => manual::man(&args),
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
+        interrupt::listen()?;
+        match cli.command {
+            Command::Eval(args) => eval::run(&args),
+            Command::Study(args) => study::run(&args),
+            Command::Check(args) => check::run(&args),
+            Command::Draw(args) => draw::run(&args),
+            Command::Convert(args) => convert::run(&args),
+            Command::Bench(args) => bench::run(&args),
+            Command::Tradeoff(args) => tradeoff::run(&args),
+            Command::Adapters(args) => adapters::run(&args),
+            Command::Completions(args) => manual::completions(&args),
+            Command::Man(args) => manual::man(&args),
+        }
     }));
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,

@@ -7,13 +7,13 @@ use anyhow::anyhow;
 use glam::DVec2;
 use tautline::example::{BuiltIn, NameError};
 use tautline::report::bench::BenchScene;
-use tautline::scene::{AnchorError, Model, read_scene};
+use tautline::scene::{AnchorError, Model, read_scene_with};
 
 use super::failure::Failure;
-use super::input::note;
+use super::input::{FileArgs, note, warn};
 
 /// The scene called `name`, or the one in that file.
-pub(super) fn open(name: &str, anchor: Option<DVec2>) -> Result<BenchScene, Failure> {
+pub(super) fn open(name: &str, anchor: Option<DVec2>, file: &FileArgs) -> Result<BenchScene, Failure> {
     let path = Path::new(name);
     match name.parse::<BuiltIn>() {
         Ok(_) if anchor.is_some() => {
@@ -25,12 +25,13 @@ pub(super) fn open(name: &str, anchor: Option<DVec2>) -> Result<BenchScene, Fail
             Err(Failure::input(anyhow!("{error}; and there is no file of that name")))
         }
         Err(_) => {
-            let scene = read_scene(path)?;
+            let scene = read_scene_with(path, &file.options())?;
             note(path, &scene);
             let model = Model::new(scene, anchor).map_err(|error| match error {
                 AnchorError::Missing => Failure::input(anyhow!("{name}: no anchor; give --anchor X,Y")),
                 other => Failure::input(anyhow!("{name}: {other}")),
             })?;
+            warn(name, &model);
             Ok(BenchScene::Own { name: name.to_owned(), model: Arc::new(model) })
         }
     }

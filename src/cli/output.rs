@@ -7,14 +7,13 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
-use tautline::output::{EventWriter, ResultWriter, WholeFile};
+use tautline::output::{EventWriter, ResultWriter, WholeFile, commit};
 use tautline::rope::TraceRecord;
 use tautline::scene::Model;
 
 use super::failure::Failure;
-use super::interrupt::{self, Writing};
 
-/// How many records are written between two looks for Ctrl-C; their text is held in memory.
+/// How many records are written at a time; their text is held in memory.
 const RECORDS: usize = 1024;
 
 /// The files of a run. They are begun with the first batch and appear under their names in [`finish`](Self::finish);
@@ -32,8 +31,6 @@ struct Running {
     /// Taken when no more records come.
     sender: Option<SyncSender<Vec<TraceRecord>>>,
     thread: Option<JoinHandle<Result<Written, Failure>>>,
-    /// Ends after the thread.
-    _writing: Writing,
 }
 
 /// Whole files that wait for their names, and how long writing them took.
@@ -68,20 +65,18 @@ impl Output {
             return Ok(Duration::ZERO);
         }
         let (files, took) = self.run()?.end()?;
-        interrupt::check()?;
+        let _together = commit();
         files.into_iter().try_for_each(WholeFile::finish)?;
         Ok(took)
     }
 
     fn run(&mut self) -> Result<&mut Running, Failure> {
         if self.running.is_none() {
-            let writing = Writing::begin();
-            interrupt::check()?;
             let (sender, records) = sync_channel(0);
             let (out, events, model) = (self.out.clone(), self.events.clone(), self.model.clone());
             let notes = self.notes.clone();
             let thread = spawn(move || write_all(out.as_deref(), events.as_deref(), &model, &notes, &records));
-            self.running = Some(Running { sender: Some(sender), thread: Some(thread), _writing: writing });
+            self.running = Some(Running { sender: Some(sender), thread: Some(thread) });
         }
         Ok(self.running.as_mut().expect("it has just begun"))
     }
@@ -115,8 +110,8 @@ fn write_all(
     records: &Receiver<Vec<TraceRecord>>,
 ) -> Result<Written, Failure> {
     let mut took = Duration::ZERO;
-    let mut out = out.map(ResultWriter::create).transpose()?;
-    let mut events = events.map(EventWriter::create).transpose()?;
+    let mut out = out.map(|path| ResultWriter::create_labelled(path, model.scene())).transpose()?;
+    let mut events = events.map(|path| EventWriter::create_labelled(path, model.scene())).transpose()?;
     for (key, value) in notes {
         out.iter_mut().for_each(|out| out.note(key, value));
         events.iter_mut().for_each(|events| events.note(key, value));
@@ -124,7 +119,6 @@ fn write_all(
     for records in records {
         let start = Instant::now();
         for records in records.chunks(RECORDS) {
-            interrupt::check()?;
             let (results, events) = rayon::join(
                 || out.as_mut().map_or(Ok(()), |w| w.write_all(model.scene(), records)),
                 || events.as_mut().map_or(Ok(()), |w| w.write_all(model.scene(), records)),

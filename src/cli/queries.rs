@@ -17,7 +17,7 @@ use tautline::trace::{Trace, settle_owned};
 use super::failure::Failure;
 use super::output::Output;
 use super::summary::{counted, short};
-use super::{interrupt, print, print_json};
+use super::{print, print_json};
 
 /// How far a file's length may be from that of a shortest way, in parts of it: files have six digits.
 const DIGITS: f64 = 1e-4;
@@ -38,10 +38,8 @@ pub(crate) fn run(scene: &Path, queries: &Path, out: Option<&Path>, as_json: boo
     let map = GridMap::read(scene)?;
     let asked = read_queries(queries, &map)?;
     let first = Arc::new(tied(&map, &asked[0], scene)?);
-    let job = Arc::new(Job::new());
-    interrupt::stops(&job);
+    let job = Job::new();
     let answer = |driver: &mut Driver<'_>, (row, query): (usize, &Query)| -> Result<Answer, Failure> {
-        interrupt::check()?;
         let model = first.tied(query.ends()[0]).map_err(|error| Failure::input(anyhow!("{error}")))?;
         let drive = driver.drive(query, &model).ok_or_else(|| {
             let ([x, y], [to_x, to_y]) = (query.start, query.goal);

@@ -1,5 +1,6 @@
 //! What `eval` tells of a run: a short table, or JSON.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 use glam::DVec2;
@@ -42,7 +43,14 @@ pub(crate) struct Summary {
     max_length: Lengths,
     depth: Counts,
     max_depth: Counts,
+    /// The label of each wall end; empty if there are none.
+    labels: Vec<Option<String>>,
+    /// For each label, how many ropes touch something that is called so at the end.
+    touched: BTreeMap<String, u64>,
 }
+
+/// How many labels the table has at the most.
+const LABELS: usize = 10;
 
 /// How long the parts of a run took. They go on at the same time, so their sum may be more than the whole.
 #[derive(Debug, Clone, Copy, Default)]
@@ -138,7 +146,33 @@ impl Summary {
             max_length: Lengths::default(),
             depth: Counts::default(),
             max_depth: Counts::default(),
+            labels: Vec::new(),
+            touched: BTreeMap::new(),
         }
+    }
+
+    /// Learns what wall ends are called, in the scene as ropes see it.
+    pub(crate) fn label(&mut self, used: &Model) {
+        self.labels = used.scene().labels().into_iter().map(|label| label.map(str::to_owned)).collect();
+    }
+
+    /// Counts the labels of what a rope touches at the end, each once.
+    fn touch(&mut self, used: &Model, record: &TraceRecord) {
+        let label = |at: &DVec2| self.labels.get(used.vertex_at(*at)? as usize)?.as_deref();
+        let touched: BTreeSet<&str> = record.wraps.iter().filter_map(|(at, _)| label(at)).collect();
+        for label in touched {
+            match self.touched.get_mut(label) {
+                Some(count) => *count += 1,
+                None => drop(self.touched.insert(label.to_owned(), 1)),
+            }
+        }
+    }
+
+    /// The labels that most ropes touch at the end first.
+    fn most_touched(&self) -> Vec<(&str, u64)> {
+        let mut all: Vec<(&str, u64)> = self.touched.iter().map(|(label, count)| (label.as_str(), *count)).collect();
+        all.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
+        all
     }
 
     /// Learns how many vertices the engine has tried, after the last traces.
@@ -153,7 +187,7 @@ impl Summary {
     }
 
     /// Counts the next traces and their records in.
-    pub(crate) fn add(&mut self, settled: &[SettledTrace], records: &[TraceRecord]) {
+    pub(crate) fn add(&mut self, used: &Model, settled: &[SettledTrace], records: &[TraceRecord]) {
         if let Some((_, traded)) = &mut self.traded {
             for trace in settled {
                 traded.jumps += trace.jumps() as u64;
@@ -168,6 +202,9 @@ impl Summary {
             if trace.violation().is_some() {
                 self.violations += 1;
                 continue;
+            }
+            if !self.labels.is_empty() {
+                self.touch(used, record);
             }
             let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count();
             self.counted_steps += record.steps;
@@ -226,6 +263,15 @@ impl Summary {
         text += &row("max_length", self.max_length.spread());
         text += &row("depth", self.depth.spread());
         text += &row("max_depth", self.max_depth.spread());
+        if !self.touched.is_empty() {
+            text += &format!("\n  {:50}{:>12}\n", "touched by ropes at the end", "traces");
+        }
+        for (label, count) in self.most_touched().into_iter().take(LABELS) {
+            text += &format!("  {label:50}{:>12}\n", grouped(count));
+        }
+        if let Some(more @ 1..) = self.touched.len().checked_sub(LABELS) {
+            text += &format!("  and {more} more labels\n");
+        }
         let [prepared, evaluated, written, total] =
             [times.prepared, times.evaluated, times.written, times.total].map(|t| t.as_secs_f64());
         let written = if written > 0.0 { format!(", writing {written:.2} s") } else { String::new() };
@@ -266,6 +312,8 @@ impl Summary {
             "wraps": self.wraps, "unwraps": self.unwraps,
             "length": json_of(self.length.spread()), "max_length": json_of(self.max_length.spread()),
             "depth": json_of(self.depth.spread()), "max_depth": json_of(self.max_depth.spread()),
+            "touched": self.most_touched().iter().map(|(label, traces)| json!({"label": label, "traces": traces}))
+                .collect::<Vec<_>>(),
             "seconds": {
                 "prepare": times.prepared.as_secs_f64(), "evaluate": times.evaluated.as_secs_f64(),
                 "write": times.written.as_secs_f64(), "total": times.total.as_secs_f64(),

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use wgpu::{Backends, DeviceType};
 
 use super::arithmetic::{Arithmetic, PROBE_WGSL};
-use super::{GpuError, Tuning};
+use super::{GpuError, Tuning, drivers};
 
 /// How to get a software adapter.
 pub const SOFTWARE_HINT: &str = "For a software adapter (Mesa's lavapipe) on Debian or Ubuntu: \
@@ -50,6 +50,8 @@ impl fmt::Display for AdapterKind {
 /// An adapter in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AdapterSummary {
+    /// Its place among all that this machine offers, the best first, counted from 0: it tells two of one name apart.
+    pub number: usize,
     /// The device's name.
     pub name: String,
     /// What sort of device it is.
@@ -77,7 +79,12 @@ impl AdapterSummary {
             DeviceType::Other => AdapterKind::Other,
         };
         let driver = format!("{} {}", info.driver, info.driver_info).trim().to_owned();
-        AdapterSummary { name: info.name, kind, backend: info.backend.to_string(), driver }
+        AdapterSummary { number: 0, name: info.name, kind, backend: info.backend.to_string(), driver }
+    }
+
+    /// Whether it is Mesa's lavapipe, whose device is called llvmpipe.
+    pub fn is_lavapipe(&self) -> bool {
+        self.kind == AdapterKind::Software && self.name.starts_with("llvmpipe")
     }
 }
 
@@ -88,19 +95,29 @@ pub enum AdapterChoice {
     Best,
     /// The best real GPU; never a software one.
     Real,
-    /// A software adapter.
+    /// A software adapter: lavapipe if it is there, else the first that is.
     Software,
-    /// The first whose name contains these words, in whatever case.
+    /// The adapter of that number if it is one of one or two digits; else the first whose name contains these words, in
+    /// whatever case.
     Named(String),
 }
 
 impl AdapterChoice {
-    fn fits(&self, adapter: &AdapterSummary) -> bool {
+    /// Those that fit, of all that there are, the one to be taken first.
+    fn fitting<'a>(&self, all: &'a [AdapterSummary]) -> Vec<&'a AdapterSummary> {
+        let those = |fits: &dyn Fn(&AdapterSummary) -> bool| all.iter().filter(|a| fits(a)).collect();
         match self {
-            AdapterChoice::Best => true,
-            AdapterChoice::Real => adapter.kind.is_real(),
-            AdapterChoice::Software => adapter.kind == AdapterKind::Software,
-            AdapterChoice::Named(part) => adapter.name.to_lowercase().contains(&part.to_lowercase()),
+            AdapterChoice::Best => those(&|_| true),
+            AdapterChoice::Real => those(&|a| a.kind.is_real()),
+            AdapterChoice::Software => {
+                let mut those: Vec<_> = those(&|a| a.kind == AdapterKind::Software);
+                those.sort_by_key(|a| !a.is_lavapipe());
+                those
+            }
+            AdapterChoice::Named(words) => match numbered(words) {
+                Some(number) => those(&|a| a.number == number),
+                None => those(&|a| a.name.to_lowercase().contains(&words.to_lowercase())),
+            },
         }
     }
 
@@ -109,9 +126,15 @@ impl AdapterChoice {
             AdapterChoice::Best => "GPU adapter".to_owned(),
             AdapterChoice::Real => "real GPU".to_owned(),
             AdapterChoice::Software => "software adapter".to_owned(),
+            AdapterChoice::Named(number) if numbered(number).is_some() => format!("adapter of the number {number:?}"),
             AdapterChoice::Named(part) => format!("adapter with {part:?} in its name"),
         }
     }
+}
+
+/// The number that these words are: longer ones are part of names, as in RTX 3090.
+fn numbered(words: &str) -> Option<usize> {
+    words.parse().ok().filter(|_| words.len() <= 2)
 }
 
 fn enumerate() -> Vec<(AdapterSummary, wgpu::Adapter)> {
@@ -124,6 +147,7 @@ fn enumerate() -> Vec<(AdapterSummary, wgpu::Adapter)> {
         .map(|adapter| (AdapterSummary::new(&adapter), adapter))
         .collect();
     all.sort_by_key(|(summary, _)| summary.kind);
+    all.iter_mut().enumerate().for_each(|(number, (summary, _))| summary.number = number);
     all
 }
 
@@ -153,6 +177,8 @@ pub struct Device {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     summary: AdapterSummary,
+    /// Others that fit as well what was asked for.
+    passed_over: Vec<AdapterSummary>,
     tuning: Tuning,
     /// The first thing that the device or its driver complained of since it was last asked.
     complaint: Arc<Mutex<Option<Complaint>>>,
@@ -168,11 +194,14 @@ impl Device {
     /// [`GpuError::NoAdapter`] with a list of what there is, or the reason why the adapter cannot be used.
     pub fn open(choice: &AdapterChoice) -> Result<Device, GpuError> {
         let all = enumerate();
-        let Some((summary, adapter)) = all.iter().find(|(summary, _)| choice.fits(summary)) else {
-            let found = all.into_iter().map(|(summary, _)| summary).collect();
-            return Err(GpuError::NoAdapter { wanted: choice.words(), found });
+        let found: Vec<AdapterSummary> = all.iter().map(|(summary, _)| summary.clone()).collect();
+        let fitting = choice.fitting(&found);
+        let Some((first, others)) = fitting.split_first() else {
+            return Err(GpuError::NoAdapter { wanted: choice.words(), found, advice: drivers::advice() });
         };
-        Device::of(summary, adapter)
+        let mut device = Device::of(first, &all[first.number].1)?;
+        device.passed_over = others.iter().map(|&other| other.clone()).collect();
+        Ok(device)
     }
 
     fn of(summary: &AdapterSummary, adapter: &wgpu::Adapter) -> Result<Device, GpuError> {
@@ -195,7 +224,7 @@ impl Device {
         });
         let tuning = Tuning::of(summary.kind, adapter.get_info().subgroup_max_size);
         let arithmetic = Arc::default();
-        Ok(Device { device, queue, summary: summary.clone(), tuning, complaint, arithmetic })
+        Ok(Device { device, queue, summary: summary.clone(), passed_over: Vec::new(), tuning, complaint, arithmetic })
     }
 
     /// The same device, judged by what the kernel with source `wgsl` finds instead of `probe.wgsl`.
@@ -234,6 +263,11 @@ impl Device {
         &self.summary
     }
 
+    /// Other adapters that fit as well what was asked for.
+    pub fn passed_over(&self) -> &[AdapterSummary] {
+        &self.passed_over
+    }
+
     /// What suits the adapter.
     pub fn tuning(&self) -> Tuning {
         self.tuning
@@ -263,5 +297,44 @@ fn hear(complaint: &Mutex<Option<Complaint>>, words: String, lost: bool) {
         && complaint.as_ref().is_none_or(|c| lost && !c.lost)
     {
         *complaint = Some(Complaint { words, lost });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn adapters_are_found_by_number_name_and_kind() {
+        let adapter = |number: usize, name: &str, kind| {
+            let (name, backend, driver) = (name.to_owned(), "vulkan".to_owned(), String::new());
+            AdapterSummary { number, name, kind, backend, driver }
+        };
+        let all = [
+            adapter(0, "GeForce RTX 3090", AdapterKind::Discrete),
+            adapter(1, "GeForce RTX 3090", AdapterKind::Discrete),
+            adapter(2, "Iris Xe", AdapterKind::Integrated),
+            adapter(3, "SwiftShader Device (Subzero)", AdapterKind::Software),
+            adapter(4, "llvmpipe (LLVM 15.0.6, 256 bits)", AdapterKind::Software),
+        ];
+        let named = |words: &str| AdapterChoice::Named(words.to_owned());
+        for (choice, numbers) in [
+            (AdapterChoice::Best, &[0, 1, 2, 3, 4][..]),
+            (AdapterChoice::Real, &[0, 1, 2]),
+            (AdapterChoice::Software, &[4, 3]),
+            (named("rtx"), &[0, 1]),
+            (named("1"), &[1]),
+            (named("3"), &[3]),
+            // No number in the list.
+            (named("3090"), &[0, 1]),
+            (named("15.0"), &[4]),
+            (named("15"), &[]),
+            (named("7"), &[]),
+            (named("swiftshader"), &[3]),
+        ] {
+            let found: Vec<usize> = choice.fitting(&all).iter().map(|a| a.number).collect();
+            assert_eq!(found, numbers, "{choice:?}");
+        }
+        assert_eq!(AdapterChoice::Software.fitting(&all[..4])[0].number, 3);
     }
 }

@@ -8,6 +8,7 @@ use glam::{DVec2, Vec2};
 use wgpu::{BufferUsages, PollType};
 
 use super::pass::{PATIENCE, binding, buffer};
+use super::shapes::{Computed, SHAPES, computed};
 use super::{Device, GpuError};
 use crate::candidates::{ARITHMETIC, LONGEST_NORMAL};
 
@@ -26,25 +27,26 @@ const NORMAL: f64 = f32::MIN_POSITIVE as f64;
 /// The shader's `Sample`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-struct Sample {
-    normal: Vec2,
-    p: Vec2,
-    offset: f32,
-    unused: [f32; 3],
+pub(super) struct Sample {
+    pub normal: Vec2,
+    pub p: Vec2,
+    pub q: Vec2,
+    pub a: Vec2,
+    pub b: Vec2,
+    pub origin: Vec2,
+    pub offset: f32,
+    pub dir: f32,
 }
 
 /// The shader's `Result`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-struct Outcome {
-    product: f32,
-    sum: f32,
-    both: f32,
-    rest: f32,
-    value: f32,
-    least: f32,
-    holds: u32,
-    unused: f32,
+pub(super) struct Outcome {
+    pub product: f32,
+    pub sum: f32,
+    pub least: f32,
+    pub holds: u32,
+    pub shapes: [f32; SHAPES.len()],
 }
 
 /// What a device makes of f32, as far as a few thousand samples show.
@@ -52,17 +54,18 @@ struct Outcome {
 /// The bound of the candidate pass ([`MARGIN`](crate::candidates::MARGIN), step 1) assumes that a product or sum is one of the two
 /// nearest f32, that subnormal numbers may be taken for 0, that products and sums may be fused and put in another order, that a
 /// minimum is one of its arguments, and that a comparison with 0 holds for 0 and above. Whether a device fuses, flushes or
-/// reassociates is told because it decides close calls with `--precision fast`.
+/// rewrites sums is told, shape by shape, because it decides close calls with `--precision fast`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arithmetic {
     /// Whether all products and sums are the nearest f32, not only one of the two nearest.
     pub rounds_to_nearest: bool,
-    /// Whether a product and a sum are rounded once.
+    /// Whether a product and a sum are rounded once in some shape, and nothing else is done to it.
     pub fuses: bool,
     /// Whether subnormal products become 0.
     pub flushes: bool,
-    /// Whether sums are put in another order than they are written in.
-    pub reassociates: bool,
+    /// How each shape of sums and products is computed that the kernels contain, and three usual ones: `((a*b)+c)`,
+    /// `((a+b)-a)` and `((a-b)+b)`. A shape is written with the same letter for the same number.
+    pub shapes: Vec<(&'static str, Computed)>,
     /// The largest error of a half-plane's value, as a share of what the bound allows.
     pub largest_error: f64,
     /// What the candidate pass cannot live with.
@@ -82,22 +85,31 @@ impl Arithmetic {
             rounds_to_nearest: true,
             fuses: false,
             flushes: false,
-            reassociates: false,
+            shapes: SHAPES.map(|shape| (shape, Computed::AsWritten)).to_vec(),
             largest_error: 0.0,
             fault: None,
         };
-        for (sample, outcome) in samples.iter().zip(&outcomes) {
-            found.learn(sample, outcome);
+        for (i, outcome) in outcomes.iter().enumerate() {
+            found.learn(&samples[i], outcome);
+            let of_shape = |shape| samples[(i + shape) % SAMPLES];
+            for (shape, computed) in computed(of_shape, &outcome.shapes).into_iter().enumerate() {
+                // What becomes of subnormal numbers is another question.
+                if !is_small(&of_shape(shape)) {
+                    found.shapes[shape].1 = found.shapes[shape].1.max(computed);
+                }
+            }
         }
+        found.fuses = found.shapes.iter().any(|(_, computed)| *computed == Computed::Fused);
         Ok(found)
     }
 
     fn learn(&mut self, sample: &Sample, outcome: &Outcome) {
         let Sample { normal, p, offset, .. } = *sample;
+        let value = outcome.shapes[0];
         // Exact: 48 bits, and sums of numbers at most 24 binary orders of magnitude apart, or of which one is 0.
         let (product, sum) = (f64::from(normal.x) * f64::from(p.x), f64::from(normal.x) + f64::from(offset));
         let exact = normal.as_dvec2().dot(p.as_dvec2()) + f64::from(offset);
-        let error = (f64::from(outcome.value) - exact).abs() / ARITHMETIC;
+        let error = (f64::from(value) - exact).abs() / ARITHMETIC;
         let least = normal.x.min(p.x).min(offset);
         let is_least = outcome.least == least || is_subnormal(least.into()) && outcome.least == 0.0;
         let is_told = match outcome.holds {
@@ -114,7 +126,7 @@ impl Arithmetic {
         } else if !is_told {
             Some(("comparison with 0", "hold for 0 and above", outcome.holds.to_string(), least.into()))
         } else if error.is_nan() || error > 1.0 {
-            Some(("value of a half-plane", &*bound, format!("{:e}", outcome.value), exact))
+            Some(("value of a half-plane", &*bound, format!("{value:e}"), exact))
         } else {
             None
         };
@@ -127,11 +139,12 @@ impl Arithmetic {
         let is_flushed = product.abs() < NORMAL;
         self.flushes |= outcome.product == 0.0 && is_subnormal(product);
         self.rounds_to_nearest &= (is_flushed || outcome.product == product as f32) && outcome.sum == sum as f32;
-        let (once, twice) = (normal.x.mul_add(p.x, offset), normal.x * p.x + offset);
-        self.fuses |= once != twice && outcome.both == once;
-        let rest = (normal.x + offset) - normal.x;
-        self.reassociates |= rest != offset && outcome.rest == offset;
     }
+}
+
+/// Whether a sample was made to have a subnormal product.
+fn is_small(sample: &Sample) -> bool {
+    (sample.normal.x * sample.p.x).abs() < 2f32.powi(-100)
 }
 
 /// Whether f32 has at most a subnormal number for it, and it is not 0.
@@ -171,7 +184,9 @@ fn samples() -> Vec<Sample> {
         let p = DVec2::new(draw(), draw()).as_vec2();
         let close = draw() * 2f64.powi(-(i as i32 % 24));
         let offset = (close - normal.as_dvec2().dot(p.as_dvec2())) as f32;
-        let sample = Sample { normal, p, offset, unused: [0.0; 3] };
+        let [q, a, b, origin] = std::array::from_fn(|_| DVec2::new(draw(), draw()).as_vec2());
+        let dir = if draw() < 0.0 { -1.0 } else { 1.0 };
+        let sample = Sample { normal, p, q, a, b, origin, offset, dir };
         let (tiny, less) = (2f32.powi(-100), 2f32.powi(-30));
         match i % 16 {
             0 => {
@@ -211,8 +226,8 @@ fn run(opened: &Device, wgsl: &str, samples: &[Sample]) -> Result<Vec<Outcome>, 
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     });
-    let bytes = size_of_val(samples);
-    let asked = buffer(device, "samples", bytes, BufferUsages::STORAGE | BufferUsages::COPY_DST);
+    let bytes = samples.len() * size_of::<Outcome>();
+    let asked = buffer(device, "samples", size_of_val(samples), BufferUsages::STORAGE | BufferUsages::COPY_DST);
     let results = buffer(device, "results", bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
     let readback = buffer(device, "readback", bytes, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
     let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -73,6 +73,7 @@ mod tests {
 
     use naga::{Module, TypeInner};
 
+    use super::super::arithmetic::{Outcome, PROBE_WGSL, Sample};
     use super::super::pages::{PAGE_BYTES, PAGE_VERTICES};
     use super::super::pass::Span;
     use super::*;
@@ -94,7 +95,7 @@ mod tests {
     #[test]
     fn the_shaders_are_valid() {
         use naga::valid::{Capabilities, ValidationFlags, Validator};
-        for wgsl in [SWEEP_WGSL, DECIDE_WGSL] {
+        for wgsl in [SWEEP_WGSL, DECIDE_WGSL, PROBE_WGSL] {
             Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&shader(wgsl)).unwrap();
         }
     }
@@ -120,6 +121,11 @@ mod tests {
             layout(&module, "Answer"),
             (size_of::<Answer>() as u32, members!(Answer: leg, place, dir, unused, at))
         );
+        let module = shader(PROBE_WGSL);
+        let sample = members!(Sample: normal, p, q, a, b, origin, offset, dir);
+        assert_eq!(layout(&module, "Sample"), (size_of::<Sample>() as u32, sample));
+        let outcome = members!(Outcome: product, sum, least, holds, shapes);
+        assert_eq!(layout(&module, "Result"), (size_of::<Outcome>() as u32, outcome));
         for wgsl in [SWEEP_WGSL, DECIDE_WGSL] {
             let module = shader(wgsl);
             let (size, span) = layout(&module, "Span");

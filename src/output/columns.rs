@@ -9,6 +9,7 @@ use arrow_array::builder::{
 use arrow_schema::{DataType, Field, Fields};
 use glam::DVec2;
 
+use super::labels::Labels;
 use super::tables::Columns;
 use super::text::Row;
 use crate::rope::{Event, TraceRecord};
@@ -48,6 +49,8 @@ pub(super) struct ResultColumns {
     wraps: ListBuilder<StructBuilder>,
     sides: ListBuilder<StringBuilder>,
     pull: StructBuilder,
+    /// Where wall ends have labels.
+    labels: Option<ListBuilder<StringBuilder>>,
 }
 
 impl Default for ResultColumns {
@@ -64,13 +67,25 @@ impl Default for ResultColumns {
             wraps: ListBuilder::new(point_builder()).with_field(element(DataType::Struct(point_fields()))),
             sides: ListBuilder::new(StringBuilder::new()).with_field(element(DataType::Utf8)),
             pull: point_builder(),
+            labels: None,
         }
     }
 }
 
+/// A list of labels; a wall end may have none.
+fn label_element() -> Field {
+    Field::new("element", DataType::Utf8, true)
+}
+
 impl ResultColumns {
+    /// With room for labels, if there are some.
+    pub(super) fn labelled(labels: &Labels) -> Self {
+        let list = || ListBuilder::new(StringBuilder::new()).with_field(label_element());
+        ResultColumns { labels: (!labels.is_empty()).then(list), ..ResultColumns::default() }
+    }
+
     /// Adds a row; sides are those that a picture shows.
-    pub(super) fn push(&mut self, y_down: bool, r: &TraceRecord) {
+    pub(super) fn push(&mut self, y_down: bool, r: &TraceRecord, labels: &Labels) {
         self.trace.append_value(r.trace);
         self.status.append_value(r.status.name());
         self.steps.append_value(r.steps);
@@ -86,12 +101,18 @@ impl ResultColumns {
         self.wraps.append(true);
         self.sides.append(true);
         push_point(&mut self.pull, r.pull);
+        if let Some(column) = &mut self.labels {
+            r.wraps.iter().for_each(|(at, _)| column.values().append_option(labels.at(*at)));
+            column.append(true);
+        }
     }
 }
 
 impl Columns for ResultColumns {
-    fn fields() -> Vec<Field> {
-        vec![
+    fn fields(&self) -> Vec<Field> {
+        let labels =
+            self.labels.as_ref().map(|_| Field::new("labels", DataType::List(Arc::new(label_element())), false));
+        let fields = vec![
             Field::new("trace", DataType::UInt64, false),
             Field::new("status", DataType::Utf8, false),
             Field::new("steps", DataType::UInt64, false),
@@ -103,7 +124,8 @@ impl Columns for ResultColumns {
             Field::new("wraps", DataType::List(Arc::new(element(DataType::Struct(point_fields())))), false),
             Field::new("sides", DataType::List(Arc::new(element(DataType::Utf8))), false),
             Field::new("pull", DataType::Struct(point_fields()), true),
-        ]
+        ];
+        fields.into_iter().chain(labels).collect()
     }
 
     fn len(&self) -> usize {
@@ -111,7 +133,8 @@ impl Columns for ResultColumns {
     }
 
     fn take(&mut self) -> Vec<ArrayRef> {
-        vec![
+        let labels = self.labels.as_mut().map(|labels| Arc::new(labels.finish()) as ArrayRef);
+        let columns: Vec<ArrayRef> = vec![
             Arc::new(self.trace.finish()),
             Arc::new(self.status.finish()),
             Arc::new(self.steps.finish()),
@@ -123,7 +146,8 @@ impl Columns for ResultColumns {
             Arc::new(self.wraps.finish()),
             Arc::new(self.sides.finish()),
             Arc::new(self.pull.finish()),
-        ]
+        ];
+        columns.into_iter().chain(labels).collect()
     }
 }
 
@@ -137,9 +161,16 @@ pub(super) struct EventColumns {
     x: Float64Builder,
     y: Float64Builder,
     side: StringBuilder,
+    /// Where wall ends have labels.
+    label: Option<StringBuilder>,
 }
 
 impl EventColumns {
+    /// With room for labels, if there are some.
+    pub(super) fn labelled(labels: &Labels) -> Self {
+        EventColumns { label: (!labels.is_empty()).then(StringBuilder::new), ..EventColumns::default() }
+    }
+
     pub(super) fn push(&mut self, row: &Row<'_>) {
         let Row { trace, at, .. } = *row;
         let Event { step, kind, vertex, .. } = *row.event;
@@ -150,12 +181,16 @@ impl EventColumns {
         self.x.append_value(at.x);
         self.y.append_value(at.y);
         self.side.append_value(row.side());
+        if let Some(column) = &mut self.label {
+            column.append_option(row.label.flatten());
+        }
     }
 }
 
 impl Columns for EventColumns {
-    fn fields() -> Vec<Field> {
-        vec![
+    fn fields(&self) -> Vec<Field> {
+        let label = self.label.as_ref().map(|_| Field::new("label", DataType::Utf8, true));
+        let fields = vec![
             Field::new("trace", DataType::UInt64, false),
             Field::new("step", DataType::UInt64, false),
             Field::new("kind", DataType::Utf8, false),
@@ -163,7 +198,8 @@ impl Columns for EventColumns {
             Field::new("x", DataType::Float64, false),
             Field::new("y", DataType::Float64, false),
             Field::new("side", DataType::Utf8, false),
-        ]
+        ];
+        fields.into_iter().chain(label).collect()
     }
 
     fn len(&self) -> usize {
@@ -171,7 +207,8 @@ impl Columns for EventColumns {
     }
 
     fn take(&mut self) -> Vec<ArrayRef> {
-        vec![
+        let label = self.label.as_mut().map(|label| Arc::new(label.finish()) as ArrayRef);
+        let columns: Vec<ArrayRef> = vec![
             Arc::new(self.trace.finish()),
             Arc::new(self.step.finish()),
             Arc::new(self.kind.finish()),
@@ -179,6 +216,7 @@ impl Columns for EventColumns {
             Arc::new(self.x.finish()),
             Arc::new(self.y.finish()),
             Arc::new(self.side.finish()),
-        ]
+        ];
+        columns.into_iter().chain(label).collect()
     }
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::columns::EventColumns;
+use super::labels::Labels;
 use super::rows::Rows;
 use super::text::Row;
 use super::{CHUNK, WholeFile, WriteError, text};
@@ -14,7 +15,11 @@ use crate::scene::Scene;
 /// `.jsonl`, `.csv` and `.parquet` have the same columns: `trace`, `step`, `kind` (`wrap` or `unwrap`), `vertex` (the
 /// scene's number of it), `x`, `y` (where it stands), `side` (`left` or `right`, as a picture of the scene shows it, also where
 /// y points down: [`Side::shown`](crate::rope::Side::shown)). Memory is bounded; it does not grow with the number of events.
-pub struct EventWriter(Rows<EventColumns>);
+/// Where the scene's wall ends have labels, `label` follows: empty or null for one without.
+pub struct EventWriter {
+    rows: Rows<EventColumns>,
+    labels: Labels,
+}
 
 impl EventWriter {
     /// Starts the file at `path`, in the format that its extension names.
@@ -23,7 +28,22 @@ impl EventWriter {
     ///
     /// Those of [`check_output`](super::check_output).
     pub fn create(path: &Path) -> Result<Self, WriteError> {
-        Ok(EventWriter(Rows::create(path, text::EVENT_HEADER)?))
+        let rows = Rows::create(path, text::EVENT_HEADER, EventColumns::default())?;
+        Ok(EventWriter { rows, labels: Labels::default() })
+    }
+
+    /// The same with the labels of the wall ends of `scene`, the one as ropes see it, if it has some. O(walls).
+    ///
+    /// # Errors
+    ///
+    /// As [`create`](Self::create).
+    pub fn create_labelled(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
+        let labels = Labels::of(scene);
+        let header = match labels.is_empty() {
+            true => text::EVENT_HEADER.to_owned(),
+            false => format!("{},label", text::EVENT_HEADER),
+        };
+        Ok(EventWriter { rows: Rows::create(path, &header, EventColumns::labelled(&labels))?, labels })
     }
 
     /// Adds the events of one trace in that scene.
@@ -50,13 +70,14 @@ impl EventWriter {
     ///
     /// If an event names a vertex that is not there.
     pub fn write_all(&mut self, scene: &Scene, records: &[TraceRecord]) -> Result<(), WriteError> {
-        self.0.write_all(
+        let labels = &self.labels;
+        self.rows.write_all(
             records,
-            |text, r| r.events.iter().try_for_each(|e| text::event_json(text, &row(scene, r.trace, e))),
-            |text, r| r.events.iter().try_for_each(|e| text::event_csv(text, &row(scene, r.trace, e))),
+            |text, r| r.events.iter().try_for_each(|e| text::event_json(text, &row(scene, labels, r.trace, e))),
+            |text, r| r.events.iter().try_for_each(|e| text::event_csv(text, &row(scene, labels, r.trace, e))),
             |table, r| {
                 r.events.iter().try_for_each(|e| {
-                    table.columns.push(&row(scene, r.trace, e));
+                    table.columns.push(&row(scene, labels, r.trace, e));
                     table.flush_if_full()
                 })
             },
@@ -66,7 +87,7 @@ impl EventWriter {
     /// Notes something about the events, where they come from say, in the metadata of a Parquet file; the other formats have
     /// no place for it.
     pub fn note(&mut self, key: &str, value: &str) {
-        self.0.note(key, value);
+        self.rows.note(key, value);
     }
 
     /// Puts the file in its place.
@@ -85,13 +106,14 @@ impl EventWriter {
     ///
     /// What the operating system says, or that an earlier write failed.
     pub fn complete(self) -> Result<WholeFile, WriteError> {
-        self.0.complete()
+        self.rows.complete()
     }
 }
 
 /// An event of a trace as rows have it.
-fn row<'e>(scene: &Scene, trace: u64, event: &'e Event) -> Row<'e> {
-    Row { trace, event, at: scene.vertices()[event.vertex as usize], y_down: scene.y_down() }
+fn row<'e>(scene: &Scene, labels: &'e Labels, trace: u64, event: &'e Event) -> Row<'e> {
+    let label = (!labels.is_empty()).then(|| labels.get(event.vertex));
+    Row { trace, event, at: scene.vertices()[event.vertex as usize], y_down: scene.y_down(), label }
 }
 
 /// Writes the events of all `records` in `scene` to `path`, as [`EventWriter`] does.
@@ -111,8 +133,12 @@ pub fn write_events(path: &Path, scene: &Scene, records: &[TraceRecord]) -> Resu
 
 #[cfg(test)]
 mod tests {
+    use arrow_array::cast::AsArray;
+    use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+
     use super::*;
     use crate::rope::{EventKind, Side, Status};
+    use crate::scene::{Object, Wall};
 
     #[test]
     fn rows_have_the_documented_form() {
@@ -149,5 +175,44 @@ mod tests {
         let down = scene.with_y_down();
         let rows = "3,12,wrap,1,1.0,2.0,right\n3,40,unwrap,0,0.1,-3e-7,left\n";
         assert_eq!(written("d.csv", &down), format!("trace,step,kind,vertex,x,y,side\n{rows}"));
+    }
+
+    #[test]
+    fn wall_ends_that_have_names_are_named() {
+        let object = |label: &str| Object { label: Some(label.to_owned()), ..Object::default() };
+        let wall = |x: f64, object| Wall { ends: [[x, 0.0].into(), [x, 1.0].into()], object, reversed: false };
+        let objects = vec![object("door, left"), Object::default()];
+        let scene = Scene::of(objects, [wall(0.0, 0), wall(1.0, 1)]).unwrap();
+        let event = |vertex| Event { step: 1, kind: EventKind::Wrap, vertex, side: Side::Left };
+        let record = TraceRecord {
+            trace: 3,
+            status: Status::Ok,
+            steps: 1,
+            length: 1.0,
+            max_length: 1.0,
+            depth: 0,
+            max_depth: 0,
+            wraps: Vec::new(),
+            pull: None,
+            events: vec![event(0), event(2)],
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let written = |name: &str| {
+            let path = folder.path().join(name);
+            let mut writer = EventWriter::create_labelled(&path, &scene).unwrap();
+            writer.write(&scene, &record).unwrap();
+            writer.finish().unwrap();
+            std::fs::read_to_string(path).unwrap_or_default()
+        };
+        let rows = "3,1,wrap,0,0.0,0.0,left,\"door, left\"\n3,1,wrap,2,1.0,0.0,left,\n";
+        assert_eq!(written("e.csv"), format!("trace,step,kind,vertex,x,y,side,label\n{rows}"));
+        let json = written("e.jsonl");
+        let ends: Vec<&str> = json.lines().map(|line| line.split_once("\"side\":").unwrap().1).collect();
+        assert_eq!(ends, [r#""left","label":"door, left"}"#, r#""left","label":null}"#]);
+        written("e.parquet");
+        let file = std::fs::File::open(folder.path().join("e.parquet")).unwrap();
+        let batch = ParquetRecordBatchReaderBuilder::try_new(file).unwrap().build().unwrap().next().unwrap().unwrap();
+        let labels: Vec<_> = batch.column_by_name("label").unwrap().as_string::<i32>().iter().collect();
+        assert_eq!(labels, [Some("door, left"), None]);
     }
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use arrow_array::cast::AsArray;
 use arrow_array::types::UInt64Type;
 use arrow_array::{Array, RecordBatch};
+use arrow_select::coalesce::BatchCoalescer;
 use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
 
 use super::columns::ResultColumns;
@@ -13,11 +14,12 @@ use super::tables::Table;
 use super::{WholeFile, WriteError};
 use crate::caught::caught;
 
-/// How many rows of each file are held at a time.
+/// How many rows of each file are held, and written, at a time.
 const ROWS: usize = 1 << 13;
 
 /// Writes the rows of the Parquet files at `from`, each as [`ResultWriter`](super::ResultWriter) writes it and in the order of
-/// its traces, to one such file at `to`, in the order of all traces; `notes` go into its metadata. O(rows) in time for few
+/// its traces, to one such file at `to`, in the order of all traces; `notes` go into its metadata. The same rows give the same bytes, however
+/// they are shared out. O(rows) in time for few
 /// files; in memory a few thousand rows of those whose traces overlap.
 ///
 /// # Errors
@@ -25,7 +27,7 @@ const ROWS: usize = 1 << 13;
 /// A file that cannot be read or whose columns are others, a trace that is there twice, more or fewer `rows`, and those of
 /// [`check_output`](super::check_output).
 pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)], rows: u64) -> Result<(), WriteError> {
-    let mut table = Table::<ResultColumns>::new(to, WholeFile::create(to)?)?;
+    let mut table = Table::new(to, WholeFile::create(to)?, ResultColumns::default())?;
     notes.iter().for_each(|(key, value)| table.note(key, value));
     // Files are opened when it is their turn, so that there may be more of them than can be open at a time.
     let mut waiting = Vec::new();
@@ -34,6 +36,9 @@ pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)], rows
     }
     waiting.sort_unstable_by(|a, b| b.cmp(a));
     let mut open: Vec<Source> = Vec::new();
+    // Rows are written so many at a time, so that the bytes do not depend on where one file ends and the next begins.
+    let mut chunks = BatchCoalescer::new(table.schema(), ROWS);
+    let failed = |e| WriteError::io(to, std::io::Error::other(e));
     let mut written = 0;
     loop {
         // The source whose next trace is the first, and how far it goes before it is another's turn.
@@ -54,7 +59,10 @@ pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)], rows
         }
         let traces = &traces(&source.rows)[source.at..];
         let count = others.map_or(traces.len(), |next| traces.partition_point(|&trace| trace < next));
-        table.write(&source.rows.slice(source.at, count))?;
+        chunks.push_batch(source.rows.slice(source.at, count)).map_err(failed)?;
+        while let Some(rows) = chunks.next_completed_batch() {
+            table.write(&rows)?;
+        }
         source.at += count;
         written += count as u64;
         if !source.refill()? {
@@ -63,6 +71,10 @@ pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)], rows
     }
     if written != rows {
         return Err(WriteError::source(to, format!("its parts have {written} rows instead of {rows}")));
+    }
+    chunks.finish_buffered_batch().map_err(failed)?;
+    while let Some(rows) = chunks.next_completed_batch() {
+        table.write(&rows)?;
     }
     table.complete()?.finish_durably()
 }
@@ -178,6 +190,8 @@ mod tests {
         let short = merge_results(&all, &at("no.parquet"), &[], 40_001).unwrap_err().to_string();
         assert!(short.ends_with("its parts have 40000 rows instead of 40001"), "{short}");
         assert!(rows(&at("merged.parquet")) == rows(&whole));
+        merge_results(std::slice::from_ref(&whole), &at("again.parquet"), &[("a", "b".to_owned())], 40_000).unwrap();
+        assert!(std::fs::read(at("merged.parquet")).unwrap() == std::fs::read(at("again.parquet")).unwrap());
         let twice = merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &[], 0).unwrap_err().to_string();
         assert!(twice.ends_with("trace 500 is in another file too"), "{twice}");
         assert!(!at("no.parquet").exists());

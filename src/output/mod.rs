@@ -6,7 +6,9 @@
 
 mod columns;
 mod events;
+mod labels;
 mod merge;
+mod passing;
 mod results;
 mod rows;
 mod scene;
@@ -20,6 +22,7 @@ use std::path::Path;
 
 pub use events::{EventWriter, write_events};
 pub use merge::merge_results;
+pub use passing::{abandon, commit, remove_left_files};
 pub use results::{ResultWriter, write_results};
 pub use scene::write_scene;
 pub use whole_file::WholeFile;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::columns::ResultColumns;
+use super::labels::Labels;
 use super::rows::Rows;
 use super::{CHUNK, WholeFile, WriteError, text};
 use crate::rope::TraceRecord;
@@ -17,9 +18,15 @@ use crate::scene::Scene;
 /// - `.parquet`: `wraps` as a list of structs of `x` and `y`, `pull` as such a struct or null. Parquet itself has
 ///   structs but no lists of fixed size, so this reads alike in pandas, polars and DuckDB.
 ///
+/// Where the scene's wall ends have labels, `labels` follows: for each of the `wraps` its label or null; in `.csv` that list
+/// as JSON.
+///
 /// Lengths are in the scene's unit. `sides` are `left` and `right` as a picture of the scene shows them, so where y points
 /// down ([`Scene::y_down`]) they are not those of the records, which count as if it pointed up. Memory is bounded; it does not grow with the number of results.
-pub struct ResultWriter(Rows<ResultColumns>);
+pub struct ResultWriter {
+    rows: Rows<ResultColumns>,
+    labels: Labels,
+}
 
 impl ResultWriter {
     /// Starts the file at `path`, in the format that its extension names.
@@ -28,7 +35,22 @@ impl ResultWriter {
     ///
     /// Those of [`check_output`](super::check_output).
     pub fn create(path: &Path) -> Result<Self, WriteError> {
-        Ok(ResultWriter(Rows::create(path, text::RESULT_HEADER)?))
+        let rows = Rows::create(path, text::RESULT_HEADER, ResultColumns::default())?;
+        Ok(ResultWriter { rows, labels: Labels::default() })
+    }
+
+    /// The same with the labels of the wall ends of `scene`, the one as ropes see it, if it has some. O(walls).
+    ///
+    /// # Errors
+    ///
+    /// As [`create`](Self::create).
+    pub fn create_labelled(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
+        let labels = Labels::of(scene);
+        let header = match labels.is_empty() {
+            true => text::RESULT_HEADER.to_owned(),
+            false => format!("{},labels", text::RESULT_HEADER),
+        };
+        Ok(ResultWriter { rows: Rows::create(path, &header, ResultColumns::labelled(&labels))?, labels })
     }
 
     /// Adds one result in that scene.
@@ -46,13 +68,13 @@ impl ResultWriter {
     ///
     /// Those of [`write`](Self::write).
     pub fn write_all(&mut self, scene: &Scene, records: &[TraceRecord]) -> Result<(), WriteError> {
-        let y_down = scene.y_down();
-        self.0.write_all(
+        let (y_down, labels) = (scene.y_down(), &self.labels);
+        self.rows.write_all(
             records,
-            |text, record| text::result_json(text, y_down, record),
-            |text, record| text::result_csv(text, y_down, record),
+            |text, record| text::result_json(text, y_down, record, labels),
+            |text, record| text::result_csv(text, y_down, record, labels),
             |table, record| {
-                table.columns.push(y_down, record);
+                table.columns.push(y_down, record, labels);
                 table.flush_if_full()
             },
         )
@@ -61,7 +83,7 @@ impl ResultWriter {
     /// Notes something about the results, where they come from say, in the metadata of a Parquet file; the other formats have
     /// no place for it.
     pub fn note(&mut self, key: &str, value: &str) {
-        self.0.note(key, value);
+        self.rows.note(key, value);
     }
 
     /// Puts the file in its place.
@@ -80,7 +102,7 @@ impl ResultWriter {
     ///
     /// What the operating system says, or that an earlier write failed.
     pub fn complete(self) -> Result<WholeFile, WriteError> {
-        self.0.complete()
+        self.rows.complete()
     }
 }
 
@@ -97,8 +119,12 @@ pub fn write_results(path: &Path, scene: &Scene, records: &[TraceRecord]) -> Res
 
 #[cfg(test)]
 mod tests {
+    use arrow_array::cast::AsArray;
+    use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+
     use super::*;
     use crate::rope::{Event, EventKind, Side, Status};
+    use crate::scene::{Object, Wall};
 
     fn records() -> Vec<TraceRecord> {
         let event = Event { step: 1, kind: EventKind::Wrap, vertex: 0, side: Side::Left };
@@ -167,6 +193,48 @@ mod tests {
             writer.write(&Scene::new([]).unwrap(), &records()[0]).unwrap();
             drop(writer);
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        }
+    }
+
+    #[test]
+    fn wall_ends_that_have_names_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let object = |label: Option<&str>| Object { label: label.map(str::to_owned), ..Object::default() };
+        let wall = |from: [f64; 2], object| Wall { ends: [from.into(), [9.0, 9.0].into()], object, reversed: false };
+        let objects = vec![object(Some("a \"b\", c")), object(None)];
+        let scene = Scene::of(objects, [wall([1.0, 2.0], 0), wall([3.5, -1.25], 1)]).unwrap();
+        let written = |name: &str| {
+            let path = folder.path().join(name);
+            let mut writer = ResultWriter::create_labelled(&path, &scene).unwrap();
+            writer.write_all(&scene, &records()).unwrap();
+            writer.finish().unwrap();
+            std::fs::read(path).unwrap()
+        };
+        let text = |name: &str| String::from_utf8(written(name)).unwrap();
+        let json = text("r.jsonl");
+        let ends: Vec<&str> = json.lines().map(|line| line.split_once("\"pull\":").unwrap().1).collect();
+        assert_eq!(ends, [r#"[0.6,0.8],"labels":["a \"b\", c",null]}"#, r#"null,"labels":[]}"#]);
+        let csv = text("r.csv");
+        let mut lines = csv.lines();
+        assert!(lines.next().unwrap().ends_with(",pull_x,pull_y,labels"));
+        assert!(lines.next().unwrap().ends_with(r#",0.6,0.8,"[""a \""b\"", c"",null]""#), "{csv}");
+        assert!(lines.next().unwrap().ends_with(",,,[]"), "{csv}");
+        written("r.parquet");
+        let file = std::fs::File::open(folder.path().join("r.parquet")).unwrap();
+        let reader = ParquetRecordBatchReaderBuilder::try_new(file).unwrap();
+        let batch = reader.build().unwrap().next().unwrap().unwrap();
+        let labels = batch.column_by_name("labels").unwrap().as_list::<i32>().value(0);
+        let labels: Vec<_> = labels.as_string::<i32>().iter().map(|label| label.map(str::to_owned)).collect();
+        assert_eq!(labels, [Some("a \"b\", c".to_owned()), None]);
+        // Without names there is no room for them.
+        let bare = Scene::new([[[1.0, 2.0].into(), [3.5, -1.25].into()]]).unwrap();
+        for name in ["b.jsonl", "b.csv", "b.parquet"] {
+            let path = folder.path().join(name);
+            let mut writer = ResultWriter::create_labelled(&path, &bare).unwrap();
+            writer.write_all(&bare, &records()).unwrap();
+            writer.finish().unwrap();
+            write_results(&folder.path().join(format!("c{name}")), &bare, &records()).unwrap();
+            assert!(std::fs::read(path).unwrap() == std::fs::read(folder.path().join(format!("c{name}"))).unwrap());
         }
     }
 }

@@ -20,7 +20,7 @@ pub(super) enum Rows<C> {
 
 impl<C: Columns> Rows<C> {
     /// Starts the file at `path`, in the format that its extension names; `header` is the first line of CSV.
-    pub(super) fn create(path: &Path, header: &str) -> Result<Self, WriteError> {
+    pub(super) fn create(path: &Path, header: &str, columns: C) -> Result<Self, WriteError> {
         let format = Format::of(path)?;
         let mut file = WholeFile::create(path)?;
         Ok(match format {
@@ -29,7 +29,7 @@ impl<C: Columns> Rows<C> {
                 writeln!(file, "{header}").map_err(|cause| file.error(cause))?;
                 Rows::Csv(file)
             }
-            Format::Parquet => Rows::Parquet(Box::new(Table::new(path, file)?)),
+            Format::Parquet => Rows::Parquet(Box::new(Table::new(path, file, columns)?)),
         })
     }
 

@@ -1,19 +1,22 @@
 //! Scenes as GeoJSON and as well-known text.
 
 use std::io::{self, Write};
+use std::ops::Range;
 use std::path::Path;
 
 use glam::DVec2;
+use serde_json::json;
 
 use super::text::number;
 use super::{WholeFile, WriteError};
 use crate::read_error::extension;
-use crate::scene::Scene;
+use crate::scene::{MEMBER, Scene};
 
 /// Writes `scene` to `path`: `.geojson` or `.json` as GeoJSON, `.wkt` as well-known text.
 ///
 /// Reading the file gives the same walls in the same order and direction, the same vertex numbers and the same anchor, bit
-/// for bit. GeoJSON keeps whether y points down, too, as a member of its own. Walls that follow each other are one line string. What the scene's reader noted is not written. The file is
+/// for bit. GeoJSON keeps whether y points down, too, as a member of its own, and of each object its label, its layers and what
+/// of it is solid: in the member `tautline` of its features. Walls that follow each other are one line string. What the scene's reader noted is not written. The file is
 /// whole or not there at all.
 ///
 /// # Errors
@@ -43,11 +46,11 @@ pub fn write_scene(path: &Path, scene: &Scene) -> Result<(), WriteError> {
     file.finish()
 }
 
-/// The walls as few lines: each goes on as long as the next wall begins where the last one ends.
-fn lines(scene: &Scene) -> Vec<Vec<DVec2>> {
+/// These walls as few lines: each goes on as long as the next wall begins where the last one ends.
+fn lines(scene: &Scene, walls: Range<usize>) -> Vec<Vec<DVec2>> {
     let mut lines: Vec<Vec<DVec2>> = Vec::new();
     let mut end = None;
-    for wall in 0..scene.walls().len() {
+    for wall in walls {
         let [from, to] = scene.walls()[wall];
         let [a, b] = scene.ends(wall);
         match lines.last_mut() {
@@ -62,19 +65,15 @@ fn lines(scene: &Scene) -> Vec<Vec<DVec2>> {
 fn geojson(out: &mut WholeFile, scene: &Scene) -> io::Result<()> {
     let y = if scene.y_down() { "\"y\":\"down\"," } else { "" };
     writeln!(out, "{{\"type\":\"FeatureCollection\",{y}\"features\":[")?;
-    out.write_all(
-        b"{\"type\":\"Feature\",\"properties\":{},\"geometry\":{\"type\":\"MultiLineString\",\"coordinates\":[",
-    )?;
-    for (i, line) in lines(scene).iter().enumerate() {
-        out.write_all(if i == 0 { b"\n[" } else { b",\n[" })?;
-        for (k, p) in line.iter().enumerate() {
-            out.write_all(if k == 0 { b"[" } else { b",[" })?;
-            point(out, *p, b",")?;
-            out.write_all(b"]")?;
-        }
-        out.write_all(b"]")?;
+    let is_bare = scene.is_bare();
+    let mut parts = parts(scene, is_bare);
+    if parts.is_empty() {
+        parts.push(0..0);
     }
-    out.write_all(b"]}}")?;
+    for (i, walls) in parts.into_iter().enumerate() {
+        out.write_all(if i == 0 { b"" } else { b",\n" })?;
+        part(out, scene, walls, is_bare)?;
+    }
     if let Some(anchor) = scene.anchor() {
         out.write_all(b",\n{\"type\":\"Feature\",\"properties\":{\"role\":\"anchor\"},")?;
         out.write_all(b"\"geometry\":{\"type\":\"Point\",\"coordinates\":[")?;
@@ -84,8 +83,51 @@ fn geojson(out: &mut WholeFile, scene: &Scene) -> io::Result<()> {
     out.write_all(b"\n]}\n")
 }
 
+/// The walls, cut where another object begins or the direction of its outline changes.
+fn parts(scene: &Scene, is_bare: bool) -> Vec<Range<usize>> {
+    let mut parts: Vec<Range<usize>> = Vec::new();
+    let of = |wall: usize| (!is_bare).then(|| (scene.object_of(wall), scene.is_reversed(wall)));
+    for wall in 0..scene.walls().len() {
+        match parts.last_mut() {
+            Some(part) if of(part.start) == of(wall) => part.end = wall + 1,
+            _ => parts.push(wall..wall + 1),
+        }
+    }
+    parts
+}
+
+/// A feature of walls that are an object or a part of one.
+fn part(out: &mut WholeFile, scene: &Scene, walls: Range<usize>, is_bare: bool) -> io::Result<()> {
+    let mut properties = serde_json::Map::new();
+    let mut member = String::new();
+    if !is_bare {
+        let number = scene.object_of(walls.start);
+        let object = &scene.objects()[number];
+        properties.extend(object.label.iter().map(|label| ("label".to_owned(), json!(label))));
+        properties.extend(object.layers.first().map(|layer| ("layer".to_owned(), json!(layer))));
+        let kept = json!({
+            "object": number, "inside": object.inside.name(), "reversed": scene.is_reversed(walls.start),
+            "layers": object.layers,
+        });
+        member = format!("\"{MEMBER}\":{kept},");
+    }
+    write!(out, "{{\"type\":\"Feature\",{member}\"properties\":")?;
+    serde_json::to_writer(&mut *out, &properties)?;
+    out.write_all(b",\"geometry\":{\"type\":\"MultiLineString\",\"coordinates\":[")?;
+    for (i, line) in lines(scene, walls).iter().enumerate() {
+        out.write_all(if i == 0 { b"\n[" } else { b",\n[" })?;
+        for (k, p) in line.iter().enumerate() {
+            out.write_all(if k == 0 { b"[" } else { b",[" })?;
+            point(out, *p, b",")?;
+            out.write_all(b"]")?;
+        }
+        out.write_all(b"]")?;
+    }
+    out.write_all(b"]}}")
+}
+
 fn wkt(out: &mut WholeFile, scene: &Scene) -> io::Result<()> {
-    for line in lines(scene) {
+    for line in lines(scene, 0..scene.walls().len()) {
         for (i, p) in line.iter().enumerate() {
             out.write_all(if i == 0 { b"LINESTRING (" } else { b", " })?;
             point(out, *p, b" ")?;

@@ -18,9 +18,9 @@ use super::{WholeFile, WriteError};
 const BATCH: usize = 1 << 16;
 
 /// Columns that gather rows.
-pub(super) trait Columns: Default {
+pub(super) trait Columns {
     /// Name, type and whether null is allowed, for every column.
-    fn fields() -> Vec<Field>;
+    fn fields(&self) -> Vec<Field>;
     /// How many values the longest column holds.
     fn len(&self) -> usize;
     /// The columns, in the order of the fields; what is left is empty.
@@ -36,8 +36,8 @@ pub(super) struct Table<C> {
 }
 
 impl<C: Columns> Table<C> {
-    pub(super) fn new(path: &Path, file: WholeFile) -> Result<Self, WriteError> {
-        let schema = Arc::new(Schema::new(C::fields()));
+    pub(super) fn new(path: &Path, file: WholeFile, columns: C) -> Result<Self, WriteError> {
+        let schema = Arc::new(Schema::new(columns.fields()));
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
             .set_max_row_group_row_count(Some(BATCH))
@@ -45,7 +45,7 @@ impl<C: Columns> Table<C> {
         // All types are Parquet's own, so readers need no copy of the Arrow schema.
         let options = ArrowWriterOptions::new().with_properties(properties).with_skip_arrow_metadata(true);
         let writer = ArrowWriter::try_new_with_options(file, schema.clone(), options).map_err(|e| error(path, e))?;
-        Ok(Table { columns: C::default(), schema, writer, path: path.to_owned() })
+        Ok(Table { columns, schema, writer, path: path.to_owned() })
     }
 
     /// Notes something about the file in its footer.
@@ -251,13 +251,14 @@ mod tests {
         let onto_full = || WholeFile::onto(&path, File::options().write(true).open("/dev/full").unwrap());
         let expected = format!("cannot write {}: No space left on device (os error 28)", path.display());
 
-        let few = Table::<ResultColumns>::new(&path, onto_full()).unwrap();
+        let few = Table::new(&path, onto_full(), ResultColumns::default()).unwrap();
         assert_eq!(few.complete().unwrap_err().to_string(), expected);
 
-        let mut many = Table::<EventColumns>::new(&path, onto_full()).unwrap();
+        let mut many = Table::new(&path, onto_full(), EventColumns::default()).unwrap();
         let event = record(1).events[0];
         let failed = (0..1_000_000u64).find_map(|i| {
-            many.columns.push(&Row { trace: i, event: &event, at: DVec2::new(i as f64, 0.0), y_down: false });
+            let at = DVec2::new(i as f64, 0.0);
+            many.columns.push(&Row { trace: i, event: &event, at, y_down: false, label: None });
             many.flush_if_full().err()
         });
         assert_eq!(failed.unwrap().to_string(), expected);

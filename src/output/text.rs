@@ -1,13 +1,14 @@
 //! Rows as text: JSON lines and CSV.
 //!
 //! A number is written with the fewest digits that read back to the same f64, the same in both formats. CSV needs no
-//! quotes: no field holds a comma, a quote or a line end.
+//! quotes but for labels: no other field holds a comma, a quote or a line end.
 
 use std::io::{self, Write};
 
 use glam::DVec2;
 use serde::{Serialize, Serializer};
 
+use super::labels::{Labels, field};
 use crate::rope::{Event, Side, TraceRecord};
 
 pub(super) const RESULT_HEADER: &str =
@@ -30,6 +31,13 @@ struct ResultLine<'a> {
     wraps: &'a [(DVec2, Side)],
     sides: Sides<'a>,
     pull: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    labels: Option<Vec<Option<&'a str>>>,
+}
+
+/// What the wall ends are called at which the rope turns, where any have names.
+fn names<'a>(r: &TraceRecord, labels: &'a Labels) -> Option<Vec<Option<&'a str>>> {
+    (!labels.is_empty()).then(|| r.wraps.iter().map(|(at, _)| labels.at(*at)).collect())
 }
 
 fn positions<S: Serializer>(wraps: &&[(DVec2, Side)], serializer: S) -> Result<S::Ok, S::Error> {
@@ -56,7 +64,7 @@ impl Serialize for Sides<'_> {
 
 /// An event as a JSON object; the fields' order is the keys'.
 #[derive(Serialize)]
-struct EventLine {
+struct EventLine<'a> {
     trace: u64,
     step: u32,
     kind: &'static str,
@@ -64,9 +72,12 @@ struct EventLine {
     x: f64,
     y: f64,
     side: &'static str,
+    /// Null where this wall end has none, left out where none has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    label: Option<Option<&'a str>>,
 }
 
-pub(super) fn result_json(out: &mut impl Write, y_down: bool, r: &TraceRecord) -> io::Result<()> {
+pub(super) fn result_json(out: &mut impl Write, y_down: bool, r: &TraceRecord, labels: &Labels) -> io::Result<()> {
     let line = ResultLine {
         trace: r.trace,
         status: r.status.name(),
@@ -79,12 +90,13 @@ pub(super) fn result_json(out: &mut impl Write, y_down: bool, r: &TraceRecord) -
         wraps: &r.wraps,
         sides: Sides { wraps: &r.wraps, y_down },
         pull: r.pull.map(|p| p.to_array()),
+        labels: names(r, labels),
     };
     serde_json::to_writer(&mut *out, &line)?;
     out.write_all(b"\n")
 }
 
-pub(super) fn result_csv(out: &mut impl Write, y_down: bool, r: &TraceRecord) -> io::Result<()> {
+pub(super) fn result_csv(out: &mut impl Write, y_down: bool, r: &TraceRecord, labels: &Labels) -> io::Result<()> {
     write!(out, "{},{},{},", r.trace, r.status.name(), r.steps)?;
     number(out, r.length)?;
     out.write_all(b",")?;
@@ -109,6 +121,11 @@ pub(super) fn result_csv(out: &mut impl Write, y_down: bool, r: &TraceRecord) ->
     } else {
         out.write_all(b",")?;
     }
+    if let Some(names) = names(r, labels) {
+        out.write_all(b",")?;
+        // A label may hold whatever a list of them could be parted by.
+        field(out, &serde_json::to_string(&names)?)?;
+    }
     out.write_all(b"\n")
 }
 
@@ -120,6 +137,8 @@ pub(super) struct Row<'a> {
     pub at: DVec2,
     /// Whether the scene's y points down.
     pub y_down: bool,
+    /// Where the scene's wall ends have labels: that of the vertex, if it has one.
+    pub label: Option<Option<&'a str>>,
 }
 
 impl Row<'_> {
@@ -130,9 +149,9 @@ impl Row<'_> {
 }
 
 pub(super) fn event_json(out: &mut impl Write, row: &Row<'_>) -> io::Result<()> {
-    let Row { trace, at, .. } = *row;
+    let Row { trace, at, label, .. } = *row;
     let Event { step, kind, vertex, .. } = *row.event;
-    let line = EventLine { trace, step, kind: kind.name(), vertex, x: at.x, y: at.y, side: row.side() };
+    let line = EventLine { trace, step, kind: kind.name(), vertex, x: at.x, y: at.y, side: row.side(), label };
     serde_json::to_writer(&mut *out, &line)?;
     out.write_all(b"\n")
 }
@@ -143,7 +162,12 @@ pub(super) fn event_csv(out: &mut impl Write, row: &Row<'_>) -> io::Result<()> {
     number(out, row.at.x)?;
     out.write_all(b",")?;
     number(out, row.at.y)?;
-    writeln!(out, ",{}", row.side())
+    write!(out, ",{}", row.side())?;
+    if let Some(label) = row.label {
+        out.write_all(b",")?;
+        field(out, label.unwrap_or_default())?;
+    }
+    out.write_all(b"\n")
 }
 
 pub(super) fn number(out: &mut impl Write, x: f64) -> io::Result<()> {

@@ -1,12 +1,11 @@
 //! Files that are whole or not there at all.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::TempPath;
-
 use super::WriteError;
+use super::passing::Passing;
 use super::target::Target;
 
 /// A file under way: it grows under a temporary name in the target's folder and takes the target's name when it is
@@ -16,7 +15,7 @@ use super::target::Target;
 #[derive(Debug)]
 pub struct WholeFile {
     out: BufWriter<File>,
-    temporary: TempPath,
+    temporary: Passing,
     /// The path as the user gave it, for messages.
     path: PathBuf,
     target: Target,
@@ -44,16 +43,7 @@ impl WholeFile {
             let fault = if folder.exists() { "is not a folder" } else { "does not exist" };
             return Err(WriteError::target(path, format!("the folder {} {fault}", folder.display())));
         }
-        let prefix = format!(".{}.", name.to_string_lossy());
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix);
-        #[cfg(unix)]
-        {
-            // The temporary file becomes the result, so it has a usual file's permissions (less the umask).
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let (file, temporary) = builder.tempfile_in(folder).map_err(|cause| WriteError::io(path, cause))?.into_parts();
+        let (file, temporary) = Passing::create(folder, name).map_err(|cause| WriteError::io(path, cause))?;
         target.hand_over(&file).map_err(|fault| WriteError::target(path, fault))?;
         let out = BufWriter::with_capacity(1 << 16, file);
         Ok(WholeFile { out, temporary, path: path.to_owned(), target, failed: false })
@@ -92,7 +82,7 @@ impl WholeFile {
         then(&file).map_err(|cause| WriteError::io(&path, cause))?;
         // Some systems do not rename open files.
         drop(file);
-        temporary.persist(&target.path).map_err(|e| WriteError::io(&path, e.error))
+        temporary.persist(&target.path).map_err(|cause| WriteError::io(&path, cause))
     }
 
     /// Puts the path to an error of one of this file's writes.
@@ -129,6 +119,8 @@ impl Write for WholeFile {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {

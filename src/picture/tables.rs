@@ -69,7 +69,7 @@ pub(super) fn obstacles(summary: &Summary) -> String {
     let rows = summary.obstacles.iter().take(ROWS).map(|o| {
         vec![
             o.vertex.to_string(),
-            point(o.at),
+            place(o.label.as_deref(), o.at),
             count(o.walls.into()),
             percent(&o.wound),
             percent(&o.left),
@@ -84,7 +84,9 @@ pub(super) fn obstacles(summary: &Summary) -> String {
 /// The commonest ropes, turn by turn.
 pub(super) fn ropes(summary: &Summary) -> String {
     let rows = summary.ropes.iter().enumerate().map(|(i, r)| {
-        let turns = r.wraps.iter().zip(&r.sides).map(|(&at, side)| format!("{} {side}", point(at)));
+        let labels = r.labels.iter().map(Option::as_deref).chain(std::iter::repeat(None));
+        let turns = r.wraps.iter().zip(&r.sides).zip(labels);
+        let turns = turns.map(|((&at, side), label)| format!("{} {side}", place(label, at)));
         let turns: Vec<String> = turns.collect();
         let counted =
             if r.at_most > r.count { format!("{} to {}", count(r.count), count(r.at_most)) } else { count(r.count) };
@@ -97,7 +99,8 @@ pub(super) fn ropes(summary: &Summary) -> String {
 /// The wall ends that ropes touch the longest.
 pub(super) fn contacts(summary: &Summary) -> String {
     let rows = summary.contacts.iter().take(ROWS);
-    let rows = rows.map(|c| vec![c.vertex.to_string(), point(c.at), percent(&c.share), plain(&c.wraps)]);
+    let rows =
+        rows.map(|c| vec![c.vertex.to_string(), place(c.label.as_deref(), c.at), percent(&c.share), plain(&c.wraps)]);
     table("numbers", &["wall end", "at", "share of steps", "wraps a trace"], rows)
         + &left_out(summary.contacts.len(), "wall ends")
 }
@@ -130,6 +133,11 @@ fn flatten(value: &Value, name: &str, rows: &mut Vec<Vec<String>>) {
         other => other.to_string(),
     };
     rows.push(vec![name.into(), text]);
+}
+
+/// A wall end: what it is called, and where it is.
+fn place(label: Option<&str>, at: [f64; 2]) -> String {
+    label.map_or_else(|| point(at), |label| format!("{label} {}", point(at)))
 }
 
 fn point([x, y]: [f64; 2]) -> String {

@@ -14,13 +14,19 @@ const PIXELS_MAX: usize = 1 << 28;
 /// The same for interlaced ones, which have to be held as a whole.
 const INTERLACED_MAX: usize = 1 << 24;
 
-/// A pixel; all values are from 0, black or transparent, to 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A pixel; all values are from 0, black or transparent, to 65535.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pixel {
-    /// The mean of its colours.
-    pub(super) shade: f64,
-    /// How opaque it is, if it has an alpha channel, and how many colours it has besides.
-    pub(super) alpha: Option<(f64, f64)>,
+    /// Red, green and blue, which are all the same in grey images.
+    pub(super) colours: [u16; 3],
+    /// How opaque it is, if the image has an alpha channel.
+    pub(super) alpha: Option<u16>,
+}
+
+impl Pixel {
+    fn grey(value: u16) -> Self {
+        Pixel { colours: [value; 3], alpha: None }
+    }
 }
 
 /// A bit for each pixel, from the upper left one on, row by row.
@@ -77,13 +83,16 @@ fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
     // Texts and colour profiles are no pixels, and may be far larger than they are in the file.
     decoder.set_ignore_text_chunk(true);
     decoder.set_ignore_iccp_chunk(true);
-    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(wrong)?;
     let info = reader.info();
     let interlaced = info.interlaced;
     let mut bits = room(info.width as usize, info.height as usize)?;
-    let samples = reader.output_color_type().0.samples();
-    let pixels = |row: &[u8]| row.chunks_exact(samples).map(pixel).collect::<Vec<_>>();
+    let (colours, depth) = reader.output_color_type();
+    let samples = colours.samples();
+    // What is expanded has whole bytes.
+    let size = if depth == png::BitDepth::Sixteen { 2 } else { 1 };
+    let pixels = |row: &[u8]| row.chunks_exact(samples * size).map(|p| pixel(p, size)).collect::<Vec<_>>();
     let (width, height) = (bits.width, bits.height);
     if interlaced {
         if width * height > INTERLACED_MAX {
@@ -91,7 +100,7 @@ fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
                 "interlaced, with more than {INTERLACED_MAX} pixels; save it without interlacing"
             )));
         }
-        let mut all = vec![0; width * height * samples];
+        let mut all = vec![0; width * height * samples * size];
         reader.next_frame(&mut all).map_err(wrong)?;
         fill(&mut bits, 0, pixels(&all).into_iter(), &mut set);
     } else {
@@ -154,12 +163,15 @@ fn inflates_beyond(bytes: &[u8], size: u64) -> bool {
     false
 }
 
-/// A pixel of 8-bit samples: grey or red, green and blue, and alpha behind them if there are two or four.
-fn pixel(samples: &[u8]) -> Pixel {
-    let colours = if samples.len() < 3 { 1 } else { 3 };
-    let sum: f64 = samples[..colours].iter().map(|&s| f64::from(s)).sum();
-    let alpha = samples.get(colours).map(|&a| (f64::from(a) / 255.0, colours as f64));
-    Pixel { shade: sum / colours as f64 / 255.0, alpha }
+/// A pixel of samples of one or two bytes: grey or red, green and blue, and alpha behind them if there are two or four.
+fn pixel(samples: &[u8], bytes: usize) -> Pixel {
+    let sample = |i: usize| match bytes {
+        1 => u16::from(samples[i]) * 257,
+        _ => u16::from_be_bytes([samples[2 * i], samples[2 * i + 1]]),
+    };
+    let count = samples.len() / bytes;
+    let colours = if count < 3 { [sample(0); 3] } else { [0, 1, 2].map(sample) };
+    Pixel { colours, alpha: count.is_multiple_of(2).then(|| sample(count - 1)) }
 }
 
 /// PGM, binary (P5) or as text (P2).
@@ -174,7 +186,8 @@ fn pgm(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
     if width > SIDE_MAX || height > SIDE_MAX {
         return room(width, height);
     }
-    let shade = |value: usize| Pixel { shade: value.min(white) as f64 / white as f64, alpha: None };
+    // To the nearest of 65536 values; white is no larger.
+    let shade = |value: usize| Pixel::grey(((value.min(white) * 65535 + white / 2) / white) as u16);
     let short = |has: usize| fault(format!("the image ends after {has} of {} pixels", width * height));
     if bytes[1] == b'5' {
         // One white space, and the pixels behind it.
@@ -247,22 +260,23 @@ fn word<'a>(bytes: &'a [u8], at: &mut usize) -> &'a str {
 mod tests {
     use super::*;
 
-    /// The shades of all pixels, and of each its alpha.
+    /// All pixels.
     fn pixels(bytes: &[u8]) -> Result<(usize, Vec<Pixel>), Fault> {
         let mut all = Vec::new();
+        let is_dark = |p: Pixel| p.colours[0] < 1 << 15;
         let bits = parse(bytes, |p| {
             all.push(p);
-            p.shade < 0.5
+            is_dark(p)
         })?;
         for (i, p) in all.iter().enumerate() {
-            assert_eq!(bits.get(i % bits.width, i / bits.width), p.shade < 0.5);
+            assert_eq!(bits.get(i % bits.width, i / bits.width), is_dark(*p));
         }
         assert_eq!(all.len(), bits.width * bits.height);
         Ok((bits.width, all))
     }
 
-    fn grey(shade: f64) -> Pixel {
-        Pixel { shade, alpha: None }
+    fn grey(shade: u16) -> Pixel {
+        Pixel::grey(shade * 257)
     }
 
     fn png_of(colour: png::ColorType, depth: png::BitDepth, width: u32, data: &[u8]) -> Vec<u8> {
@@ -276,7 +290,7 @@ mod tests {
 
     #[test]
     fn every_kind_of_image_gives_the_same_pixels() {
-        let expected = (3, vec![grey(0.0), grey(205.0 / 255.0), grey(1.0)]);
+        let expected = (3, vec![grey(0), grey(205), grey(255)]);
         assert_eq!(pixels(b"P5 3 1 255\n\x00\xcd\xff").unwrap(), expected);
         assert_eq!(pixels(b"P5\n# CREATOR: map_saver\n3\n1 # size\n65535\n\0\0\xcd\xcd\xff\xff").unwrap(), expected);
         assert_eq!(pixels(b"P2\n3 1\n255\n0 205\n255").unwrap(), expected);
@@ -284,9 +298,13 @@ mod tests {
         assert_eq!(pixels(&png_of(ColorType::Grayscale, BitDepth::Eight, 3, &[0, 205, 255])).unwrap(), expected);
         let rgb = [0, 0, 0, 205, 205, 205, 255, 255, 255];
         assert_eq!(pixels(&png_of(ColorType::Rgb, BitDepth::Eight, 3, &rgb)).unwrap(), expected);
-        assert_eq!(pixels(&png_of(ColorType::Grayscale, BitDepth::One, 3, &[0b0110_0000])).unwrap().1[1], grey(1.0));
+        assert_eq!(pixels(&png_of(ColorType::Grayscale, BitDepth::One, 3, &[0b0110_0000])).unwrap().1[1], grey(255));
         let colours = pixels(&png_of(ColorType::Rgba, BitDepth::Eight, 1, &[30, 60, 90, 51])).unwrap().1;
-        assert_eq!(colours, [Pixel { shade: 60.0 / 255.0, alpha: Some((0.2, 3.0)) }]);
+        assert_eq!(colours, [Pixel { colours: [30, 60, 90].map(|c| c * 257), alpha: Some(51 * 257) }]);
+        let deep = pixels(&png_of(ColorType::GrayscaleAlpha, BitDepth::Sixteen, 1, &[1, 2, 3, 4])).unwrap().1;
+        assert_eq!(deep, [Pixel { colours: [258; 3], alpha: Some(772) }]);
+        // A third of white, in steps of a seventh.
+        assert_eq!(pixels(b"P2 2 1 7\n0 3").unwrap().1[1], Pixel::grey(28086));
     }
 
     #[test]

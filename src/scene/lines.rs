@@ -11,12 +11,26 @@ use crate::read_error::{Fault, Place};
 pub(super) struct Lines {
     objects: Vec<Object>,
     walls: Vec<Wall>,
+    /// The object to which walls are added, and whether its outline goes against them.
+    current: (u32, bool),
 }
 
 impl Lines {
     /// Begins an object: walls that are pushed from now on are its own.
     pub(super) fn begin(&mut self, object: Object) {
         self.objects.push(object);
+        self.current = (self.objects.len() as u32 - 1, false);
+    }
+
+    /// Goes on with the object that was begun as number `object`, whose outline goes against the walls to come if they are
+    /// `reversed`.
+    pub(super) fn resume(&mut self, object: u32, reversed: bool) {
+        self.current = (object, reversed);
+    }
+
+    /// The number of the object that is under way.
+    pub(super) fn object(&self) -> u32 {
+        self.current.0
     }
 
     /// Adds the walls of one line string or ring: one for each pair of consecutive positions.
@@ -32,13 +46,13 @@ impl Lines {
         if positions.len() == 1 {
             return Err(Fault::new(place.clone(), "one position only; a line needs two or more"));
         }
-        let object = self.objects.len() as u32 - 1;
+        let (object, reversed) = self.current;
         let mut last = None;
         for (i, position) in positions.enumerate() {
             // Building the place for every position would take longer than reading the position.
             let p = position.map_err(|what| Fault::new(place.then("position", i), what))?;
             if let Some(last) = last {
-                self.walls.push(Wall { ends: [last, p], object, reversed: false });
+                self.walls.push(Wall { ends: [last, p], object, reversed });
             }
             last = Some(p);
         }

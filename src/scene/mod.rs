@@ -10,6 +10,7 @@ mod geojson;
 mod grid;
 mod image;
 mod index;
+mod layers;
 mod lines;
 mod model;
 mod movingai;
@@ -21,7 +22,7 @@ mod sectors;
 mod svg;
 mod wkt;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use glam::DVec2;
 
@@ -30,8 +31,9 @@ use crate::geometry::{CoordinateFault, check_point};
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};
 pub use movingai::GridMap;
+pub(crate) use object::MEMBER;
 pub use object::{Inside, Object, Wall};
-pub use read::{SceneOptions, Unknown, read_scene, read_scene_with};
+pub use read::{Ros, SceneOptions, Unknown, read_scene, read_scene_with};
 pub(crate) use sectors::{Sectors, by_angle};
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.
@@ -137,6 +139,12 @@ impl Scene {
         &self.vertices
     }
 
+    /// The lowest and highest x and y of all walls; `None` if there are none. O(walls).
+    pub fn bounds(&self) -> Option<(DVec2, DVec2)> {
+        let &first = self.vertices.first()?;
+        Some(self.vertices.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p))))
+    }
+
     /// The walls, as pairs of indices into [`vertices`](Self::vertices).
     pub fn walls(&self) -> &[[u32; 2]] {
         &self.walls
@@ -155,6 +163,63 @@ impl Scene {
     /// The number of the object to which wall `wall` belongs.
     pub fn object_of(&self, wall: usize) -> usize {
         self.drawn[wall].0 as usize
+    }
+
+    /// For each layer that an object lies in, in the order of the alphabet: how many walls its objects have.
+    pub fn layers(&self) -> BTreeMap<&str, usize> {
+        let mut layers = BTreeMap::new();
+        let mut walls = vec![0; self.objects.len()];
+        self.drawn.iter().for_each(|&(object, _)| walls[object as usize] += 1);
+        for (object, walls) in self.objects.iter().zip(walls) {
+            // A layer may be named twice where groups lie in each other.
+            let names: BTreeSet<&str> = object.layers.iter().map(String::as_str).collect();
+            names.into_iter().for_each(|name| *layers.entry(name).or_default() += walls);
+        }
+        layers
+    }
+
+    /// The label of each vertex: that of the first wall that names it, if that wall's object has one. Empty if no object
+    /// with walls has a label. O(walls).
+    pub fn labels(&self) -> Vec<Option<&str>> {
+        let label = |wall: usize| self.objects[self.object_of(wall)].label.as_deref();
+        if (0..self.walls.len()).all(|wall| label(wall).is_none()) {
+            return Vec::new();
+        }
+        let mut labels = Vec::with_capacity(self.vertices.len());
+        for (wall, &ends) in self.walls.iter().enumerate() {
+            // Vertices are numbered in the order in which walls name them.
+            for end in ends {
+                if end as usize == labels.len() {
+                    labels.push(label(wall));
+                }
+            }
+        }
+        labels
+    }
+
+    /// The same scene with the walls only of the objects for which `is_kept` holds.
+    fn of_objects(&self, is_kept: impl Fn(&Object) -> bool) -> Self {
+        let mut numbers = vec![None; self.objects.len()];
+        let mut objects = Vec::new();
+        for (number, object) in numbers.iter_mut().zip(&self.objects).filter(|(_, object)| is_kept(object)) {
+            *number = Some(objects.len() as u32);
+            objects.push(object.clone());
+        }
+        let kept = self.drawn.iter().enumerate().filter_map(|(wall, &(object, reversed))| {
+            Some(Wall { ends: self.ends(wall), object: numbers[object as usize]?, reversed })
+        });
+        let Scene { vertices, walls, objects, drawn, .. } = Scene::of(objects, kept).expect("its vertices are sound");
+        Scene { vertices, walls, objects, drawn, notes: self.notes.clone(), ..*self }
+    }
+
+    /// Whether the outline of wall `wall`'s object goes from its second end to its first.
+    pub(crate) fn is_reversed(&self, wall: usize) -> bool {
+        self.drawn[wall].1
+    }
+
+    /// Whether all walls are thin, in no layer and without labels.
+    pub fn is_bare(&self) -> bool {
+        (0..self.walls.len()).all(|wall| self.objects[self.object_of(wall)] == Object::default())
     }
 
     /// The endpoints of wall `wall`, in the direction of its object's outline.

@@ -80,7 +80,12 @@ impl<'a> Grid<'a> {
     fn scene(&self) -> Result<Scene, Fault> {
         let blocked = |x, y| self.blocked(x, y);
         let walls = borders(self.width, self.height(), &blocked);
-        Ok(cells::scene(walls, |[x, y]| DVec2::new(x as f64, y as f64), false)?.with_y_down())
+        let mut scene = cells::scene(walls, |[x, y]| DVec2::new(x as f64, y as f64), false)?.with_y_down();
+        if scene.walls().is_empty() {
+            let are = if self.blocked(0, 0) { "blocked" } else { "free" };
+            scene.note(format!("all {} cells are {are}, so there are no walls", self.width * self.height()));
+        }
+        Ok(scene)
     }
 
     fn blocked(&self, column: usize, row: usize) -> bool {
@@ -189,7 +194,12 @@ mod tests {
 
     #[test]
     fn the_outer_edge_is_no_wall() {
-        assert!(walls(&map(&["@@", "@@"])).is_empty());
+        for (row, are) in [("@@", "blocked"), ("..", "free")] {
+            let scene = parse(&map(&[row, row])).unwrap();
+            assert!(scene.walls().is_empty());
+            assert_eq!(scene.notes(), [format!("all 4 cells are {are}, so there are no walls")]);
+        }
+        assert!(parse(&map(&["@."])).unwrap().notes().is_empty());
         assert_eq!(walls(&map(&["@."])), [[1., 0., 1., 1.]]);
         assert_eq!(walls(&map(&["@@@", "...", "..."])), [[0., 1., 3., 1.]]);
     }

@@ -28,6 +28,26 @@ pub enum Inside {
     Right,
 }
 
+/// The member of a GeoJSON feature that holds what GeoJSON has no place for.
+pub(crate) const MEMBER: &str = "tautline";
+
+impl Inside {
+    /// How files of our own name it.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Inside::Free => "free",
+            Inside::EvenOdd => "even-odd",
+            Inside::NonZero => "nonzero",
+            Inside::Right => "right",
+        }
+    }
+
+    /// What files of our own name so.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        [Inside::Free, Inside::EvenOdd, Inside::NonZero, Inside::Right].into_iter().find(|inside| inside.name() == name)
+    }
+}
+
 /// A wall as readers find it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {

@@ -2,18 +2,35 @@
 
 use std::path::Path;
 
-use super::{Scene, dxf, geojson, movingai, ros_map, svg, wkt};
+use super::{Scene, dxf, geojson, layers, movingai, ros_map, svg, wkt};
 use crate::read_error::{ReadError, extension};
 use crate::read_file::{SCENE_MAX, read_bytes, read_text};
 
 /// What a file leaves open and its reader needs to know.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct SceneOptions {
     /// How far a wall may lie from the curve that it stands for, in the scene's unit: above 0. `None` is a 2000th of the
     /// drawing's longer side. For `.svg` and `.dxf`.
     pub flatten: Option<f64>,
     /// What cells are of which the map does not know whether they are free. For `.yaml`.
     pub unknown: Unknown,
+    /// Whose `map_server` says which cells are occupied. For `.yaml`.
+    pub ros: Ros,
+    /// The layers whose walls are taken; all if it is empty. A layer of a GeoJSON feature is what its property `layer`
+    /// says, and for a name `KEY=VALUE` what its property `KEY` does.
+    pub layers: Vec<String>,
+    /// The layers whose walls are left out.
+    pub without_layers: Vec<String>,
+}
+
+/// Whose `map_server` a map is read like.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Ros {
+    /// That of ROS 1.
+    One,
+    /// nav2's, of ROS 2.
+    #[default]
+    Two,
 }
 
 /// What a cell is of which a map does not know whether it is free.
@@ -52,7 +69,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
 ///
 /// # Errors
 ///
-/// A file that cannot be opened, an extension of another format, and contents that are not a scene, with their place.
+/// A file that cannot be opened, an extension of another format, contents that are not a scene, with their place, and a
+/// layer that is not there.
 ///
 /// ```
 /// use tautline::scene::{SceneOptions, read_scene_with};
@@ -66,18 +84,18 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
 /// ```
 pub fn read_scene_with(path: &Path, options: &SceneOptions) -> Result<Scene, ReadError> {
     let parsed = match extension(path).as_str() {
-        "geojson" | "json" => geojson::parse(&read_text(path, SCENE_MAX)?),
+        "geojson" | "json" => geojson::parse(&read_text(path, SCENE_MAX)?, &layers::keys(options)),
         "wkt" => wkt::parse(&read_text(path, SCENE_MAX)?),
         "svg" => svg::parse(&read_text(path, SCENE_MAX)?, options.flatten),
         "dxf" => dxf::parse(&read_bytes(path, SCENE_MAX)?, options.flatten),
         "map" => movingai::parse(&read_text(path, SCENE_MAX)?),
-        "yaml" | "yml" => return ros_map::read(path, options.unknown),
+        "yaml" | "yml" => Ok(ros_map::read(path, options.ros, options.unknown)?),
         _ => {
             let extensions = &[".geojson", ".json", ".wkt", ".svg", ".dxf", ".map", ".yaml", ".yml"];
             return Err(ReadError::Extension { path: path.into(), what: "scenes", extensions });
         }
     };
-    parsed.map_err(|fault| fault.in_file(path))
+    parsed.and_then(|scene| layers::choose(scene, options)).map_err(|fault| fault.in_file(path))
 }
 
 #[cfg(test)]

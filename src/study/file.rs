@@ -105,6 +105,13 @@ impl Plan {
             (None, None) => return err("scene: give `file = \"...\"` or `built_in = \"rooms\"`".into()),
             _ => {}
         }
+        let scene = &self.scene;
+        if !(1..=2).contains(&scene.ros) {
+            return err(format!("scene.ros: there is no ROS {}; give 1 or 2", scene.ros));
+        }
+        if scene.built_in.is_some() && !(scene.layers.is_empty() && scene.without_layers.is_empty()) {
+            return err("scene: `layers` and `without_layers` go with a `file`; built-in scenes have none".into());
+        }
         match &self.scene.anchor {
             Some(AnchorPlan::Several(anchors)) if anchors.is_empty() || anchors.len() > 1024 => {
                 return err(format!("scene.anchor: give 1 to 1024 points, not {}", anchors.len()));
@@ -205,6 +212,8 @@ mod tests {
         assert!(fault("traces = 10_000", "traces = -1").contains("line "));
         assert!(fault("built_in = \"rooms\"", "anchor = \"here\"\nbuilt_in = \"rooms\"").contains("[x, y]"));
         assert!(fault("built_in = \"rooms\"", "").contains("scene"));
+        assert!(fault("built_in", "ros = 3\nbuilt_in").contains("scene.ros: there is no ROS 3; give 1 or 2"));
+        assert!(fault("built_in", "layers = [\"a\"]\nbuilt_in").contains("go with a `file`"));
         assert!(fault("block = 1000", "block = 1\ntraces = 9_000_000").contains("line "));
     }
 

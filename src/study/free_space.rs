@@ -68,7 +68,11 @@ impl Region {
     }
 
     fn new(model: &Model, visibility: &Visibility, triangles: &[u32]) -> Option<Self> {
-        let (low, high) = model.bounds();
+        Region::within(model.bounds(), visibility, triangles)
+    }
+
+    /// What of these triangles lies within a box; `None` if it has no area.
+    pub(super) fn within((low, high): (DVec2, DVec2), visibility: &Visibility, triangles: &[u32]) -> Option<Self> {
         let (mut pieces, mut areas, mut sum) = (Vec::new(), Vec::new(), 0.0);
         for &triangle in triangles {
             let whole = visibility.triangle(triangle);
@@ -84,6 +88,12 @@ impl Region {
             }
         }
         (!pieces.is_empty()).then_some(Region { pieces, areas, low, high })
+    }
+
+    /// Its area.
+    pub(super) fn area(&self) -> f64 {
+        // Pieces have twice the area of their triangles.
+        self.areas.last().map_or(0.0, |twice| twice / 2.0)
     }
 
     /// A uniform point of those that are `fit`; `None` if 65,536 points in a row are not.
@@ -163,6 +173,32 @@ mod tests {
         }
         // Five standard errors of a count of mean 1,000.
         assert!(counts.iter().all(|&c| (f64::from(c) - 1000.0).abs() < 5.0 * 30.3), "{counts:?}");
+    }
+
+    #[test]
+    fn a_solid_on_whose_border_the_anchor_stands_is_not_free() {
+        use crate::scene::{Inside, Object, Wall};
+        let rings = [
+            ring(&[[1.0, 1.0], [4.0, 1.0], [4.0, 2.0], [1.0, 2.0]]),
+            ring(&[[0.0, 0.0], [5.0, 0.0], [5.0, 3.0], [0.0, 3.0]]),
+        ];
+        let walls = rings.iter().zip(0..).flat_map(|(ring, object)| {
+            ring.iter().map(move |wall| Wall { ends: wall.map(DVec2::from), object, reversed: false })
+        });
+        let objects = |inside| vec![Object { inside, ..Object::default() }, Object::default()];
+        let scene = |inside| Scene::of(objects(inside), walls.clone()).unwrap();
+        for anchor in [[1.0, 2.0], [2.0, 1.0]] {
+            let within = |inside| {
+                let model = Model::new(scene(inside), Some(anchor.into())).unwrap();
+                let space = FreeSpace::new(&model).unwrap();
+                let mut random = Random::new(1, Purpose::Anchor, 0);
+                let is_within = |p: DVec2| p.cmpgt(DVec2::ONE).all() && p.cmplt(DVec2::new(4.0, 2.0)).all();
+                (0..1000).filter(|_| is_within(space.draw(&mut random))).count()
+            };
+            assert_eq!(within(Inside::EvenOdd), 0);
+            // A thin outline has free space on both sides.
+            assert!(within(Inside::Free) > 100);
+        }
     }
 
     #[test]

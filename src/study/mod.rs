@@ -5,12 +5,15 @@ mod file;
 mod file_places;
 mod free_space;
 mod opened;
+mod order;
 mod plan;
 mod random;
 mod run;
 mod state;
+mod student;
 mod summarize;
 mod summary;
+mod surroundings;
 mod tally;
 mod walk;
 
@@ -20,11 +23,12 @@ pub use plan::{
     AnchorPlan, AtWalls, OutputPlan, Plan, PlanError, RunPlan, Sampled, ScenePlan, Start, TallyPlan, UntilPlan,
     WalkPlan,
 };
-pub use run::{RunError, Spent, run};
-pub use state::{Shard, State, StateError, merge};
+pub use run::{RunError, Spent, run, run_again};
+pub use state::{Check, Kept, Part, Shard, State, StateError, merge};
 pub use summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Stopped, Summary, Survival,
     SurvivalPoint, Traded, quantity,
 };
+pub use surroundings::anchor_warnings;
 pub(crate) use tally::Moments;
 pub use walk::Walks;

@@ -10,12 +10,13 @@ use rayon::prelude::*;
 use super::free_space::FreeSpace;
 use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
 use super::random::{Purpose, Random};
+use super::state::Shard;
 use super::tally::Setting;
 use super::walk::Walks;
 use crate::example::BuiltIn;
 use crate::geometry::{Shown, number};
 use crate::read_file::open;
-use crate::scene::{AnchorError, Model, Scene, read_scene};
+use crate::scene::{AnchorError, Model, Scene, read_scene_with};
 use crate::simplify::simplify;
 use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
 
@@ -46,9 +47,8 @@ impl Study {
                 let built_in: BuiltIn = name.parse().map_err(|e| PlanError::new(format!("scene.built_in: {e}")))?;
                 built_in.scene(1)
             }
-            (None, Some(file)) => {
-                read_scene(&folder.join(file)).map_err(|e| PlanError::new(format!("scene.file: {e}")))?
-            }
+            (None, Some(file)) => read_scene_with(&folder.join(file), &plan.scene.options())
+                .map_err(|e| PlanError::new(format!("scene.file: {e}")))?,
             (None, None) => return Err(PlanError::new("scene: give `file` or `built_in`")),
         };
         let models = models(&plan, &scene)?;
@@ -94,6 +94,30 @@ impl Study {
     pub fn block(&self, block: u64) -> Range<u64> {
         let size = u64::from(self.plan.run.block);
         block * size..((block + 1) * size).min(self.plan.run.count())
+    }
+
+    /// How many traces a shard has. They are counted from 0, in the order of its blocks: those are their places.
+    pub fn places(&self, shard: Shard) -> u64 {
+        let last = shard.count(self.plan.blocks()).checked_sub(1);
+        last.map_or(0, |last| {
+            let block = self.block(shard.block(last));
+            last * u64::from(self.plan.run.block) + (block.end - block.start)
+        })
+    }
+
+    /// The numbers of the traces at these places of a shard, block by block, each with its place among the shard's blocks.
+    pub(super) fn numbers(
+        &self,
+        shard: Shard,
+        places: Range<u64>,
+    ) -> impl Iterator<Item = (u64, Range<u64>)> + use<'_> {
+        let size = u64::from(self.plan.run.block);
+        let blocks = if places.is_empty() { 0..0 } else { places.start / size..places.end.div_ceil(size) };
+        blocks.map(move |index| {
+            let block = self.block(shard.block(index));
+            let at = |place: u64| (block.start + place.saturating_sub(index * size)).min(block.end);
+            (index, at(places.start)..at(places.end))
+        })
     }
 
     /// Trace `number`, the same on every machine. O(its steps) where it is drawn; where the traces come from a file, that is

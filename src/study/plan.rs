@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::file_places::located;
 use crate::engine::Precision;
 use crate::read_file::{SETTINGS_MAX, read_text};
+use crate::scene::{Ros, SceneOptions};
 
 /// A study, as its file describes it. All lengths are in the scene's unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,6 +45,36 @@ pub struct ScenePlan {
     /// Where the rope is tied, instead of where the scene says.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub anchor: Option<AnchorPlan>,
+    /// The layers of the file whose walls are taken; all without it. Of GeoJSON what the property `layer` says, or as
+    /// `KEY=VALUE` what the property `KEY` does.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layers: Vec<String>,
+    /// The layers whose walls are left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub without_layers: Vec<String>,
+    /// Which ROS's `map_server` says what cells of a map are occupied: 1 or 2.
+    #[serde(default = "default_ros", skip_serializing_if = "is_default_ros")]
+    pub ros: u8,
+}
+
+fn default_ros() -> u8 {
+    2
+}
+
+fn is_default_ros(ros: &u8) -> bool {
+    *ros == default_ros()
+}
+
+impl ScenePlan {
+    /// What the file leaves open.
+    pub(super) fn options(&self) -> SceneOptions {
+        SceneOptions {
+            ros: if self.ros == 1 { Ros::One } else { Ros::Two },
+            layers: self.layers.clone(),
+            without_layers: self.without_layers.clone(),
+            ..SceneOptions::default()
+        }
+    }
 }
 
 /// Where the rope is tied.

@@ -1,6 +1,8 @@
 //! Running a study: drawing, evaluating and tallying block after block.
 
+use std::ops::ControlFlow::{self, Break, Continue};
 use std::ops::Range;
+use std::sync::Mutex;
 use std::sync::mpsc::sync_channel;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -10,9 +12,9 @@ use rayon::prelude::*;
 use super::estimate::Confidence;
 use super::opened::{Source, Study};
 use super::plan::PlanError;
-use super::state::State;
+use super::state::{Shard, State};
 use super::summary::Stopped;
-use super::tally::{Counts, Moments, Traced};
+use super::tally::{Block, Counts, Moments, SCALARS, Traced};
 use crate::engine::{Engine, EngineError, Job};
 use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
@@ -47,58 +49,154 @@ pub struct Spent {
     pub tallied: f64,
 }
 
-/// Blocks that are worked on at once.
+/// Traces that are worked on at once.
 struct Group {
-    /// Their places among the shard's blocks.
-    blocks: Range<u64>,
-    /// The traces of all of them, and how many each has.
+    /// Their places among the shard's traces.
+    places: Range<u64>,
     traces: Vec<SettledTrace>,
-    sizes: Vec<usize>,
     drawn: f64,
+}
+
+/// What a group's traces of one block have come to.
+enum Tallied {
+    /// The block is whole.
+    Whole([Moments; SCALARS.len()], Counts),
+    /// There is more to come of it.
+    Open(Block),
 }
 
 /// Goes on with `state` until the study, or the shard, is done or the job is stopped.
 ///
-/// `engines` has one for each of the study's [`models`](Study::models), in their order. After each group of blocks `after`
+/// `engines` has one for each of the study's [`models`](Study::models), in their order. After each group of traces `after`
 /// is called with the state, the group's records, and how many of them, from the first on, are in the state. The state is
-/// the same after the same number of blocks, whatever the engines, their number of threads and how often the study was interrupted.
+/// the same after the same number of traces, whatever the engines, their number of threads and how often the study was interrupted.
+/// It is locked only while traces are added to it and `after` runs, so that another thread may save it at any other time.
 ///
 /// # Errors
 ///
-/// What the traces, the engines or the caller say; [`EngineError::Stopped`] when the job was stopped. Blocks that were not
+/// What the traces, the engines or the caller say; [`EngineError::Stopped`] when the job was stopped. Traces that were not
 /// finished by then are not in the state.
 ///
 /// # Panics
 ///
-/// If there are not as many engines as anchors.
+/// If there are not as many engines as anchors, or a thread panicked that held the state.
 pub fn run<E: Send>(
     study: &Study,
     engines: &mut [Box<dyn Engine + '_>],
-    state: &mut State,
+    state: &Mutex<State>,
     job: &Job,
-    mut after: impl FnMut(&State, Vec<TraceRecord>, usize) -> Result<(), E>,
+    after: impl FnMut(&mut State, Vec<TraceRecord>, usize) -> Result<(), E>,
 ) -> Result<Spent, RunError<E>> {
-    assert_eq!(engines.len(), study.models().len(), "each anchor has its engine");
+    let size = group_size(study, engines);
+    in_groups(study, engines, state, job, size, after)
+}
+
+/// The same with groups of at most `size` traces.
+fn in_groups<E: Send>(
+    study: &Study,
+    engines: &mut [Box<dyn Engine + '_>],
+    state: &Mutex<State>,
+    job: &Job,
+    size: u64,
+    mut after: impl FnMut(&mut State, Vec<TraceRecord>, usize) -> Result<(), E>,
+) -> Result<Spent, RunError<E>> {
     let mut spent = Spent::default();
-    if state.stopped != Stopped::Unfinished {
-        return Ok(spent);
-    }
-    let all = state.shard.count(study.plan().blocks());
-    let size = group_size(study, engines.iter().map(|e| e.batch()).max().unwrap_or(1));
-    let (shard, first) = (state.shard, state.done);
-    let mut total = state.tallies.scalars();
+    let (shard, first, mut open, mut total) = {
+        let state = state.lock().expect("nobody panicked with the state");
+        if state.stopped != Stopped::Unfinished {
+            return Ok(spent);
+        }
+        (state.shard, state.place(study), state.open.clone(), state.tallies.scalars())
+    };
+    let all = shard.count(study.plan().blocks());
+    let places = first..study.places(shard);
+    groups(study, engines, (shard, places, size), job, |group, records, [waited, evaluated]| {
+        let clock = Instant::now();
+        let tallied = tally(study, shard, &group, &records, open.take());
+        let mut state = state.lock().expect("nobody panicked with the state");
+        let mut added = 0;
+        for (index, count, tallied) in tallied {
+            added += count;
+            match tallied {
+                Tallied::Open(block) => {
+                    open = Some(block.clone());
+                    state.open = Some(block);
+                }
+                Tallied::Whole(moments, counts) => {
+                    total.iter_mut().zip(&moments).for_each(|(total, block)| total.merge(block));
+                    state.tallies.add(shard.block(index), moments, counts);
+                    (state.done, state.open) = (index + 1, None);
+                    state.stopped = stopped(study, &total[1], state.done == all);
+                    if state.stopped != Stopped::Unfinished {
+                        break;
+                    }
+                }
+            }
+        }
+        let tallied = clock.elapsed().as_secs_f64();
+        state.seconds += waited + evaluated + tallied;
+        let is_over = study.plan().until.seconds.is_some_and(|most| state.seconds >= most);
+        // Only whole blocks count.
+        if is_over && state.open.is_none() && state.stopped == Stopped::Unfinished {
+            state.stopped = Stopped::Seconds;
+        }
+        spent.drawn += group.drawn;
+        spent.waited += waited;
+        spent.evaluated += evaluated;
+        spent.tallied += tallied;
+        after(&mut state, records, added).map_err(RunError::Caller)?;
+        Ok(if state.stopped == Stopped::Unfinished { Continue(()) } else { Break(()) })
+    })?;
+    Ok(spent)
+}
+
+/// Evaluates traces of a study again, without counting them: those at `places` among the traces of the shard, in order. Groups of
+/// records are given to `each`.
+///
+/// # Errors
+///
+/// As those of [`run`].
+///
+/// # Panics
+///
+/// If there are not as many engines as anchors, or not so many places.
+pub fn run_again<E: Send>(
+    study: &Study,
+    engines: &mut [Box<dyn Engine + '_>],
+    shard: Shard,
+    places: Range<u64>,
+    job: &Job,
+    mut each: impl FnMut(Vec<TraceRecord>) -> Result<(), E>,
+) -> Result<(), RunError<E>> {
+    assert!(places.end <= study.places(shard), "the shard has that many traces");
+    let size = group_size(study, engines);
+    groups(study, engines, (shard, places, size), job, |_, records, _| {
+        each(records).map_err(RunError::Caller).map(|()| Continue(()))
+    })
+}
+
+/// Draws and evaluates the traces at these places, in groups of at most that size. The next group is drawn while one is evaluated
+/// and given to `each`, with how many seconds were waited for it and how long evaluating took.
+fn groups<E: Send>(
+    study: &Study,
+    engines: &mut [Box<dyn Engine + '_>],
+    (shard, places, size): (Shard, Range<u64>, u64),
+    job: &Job,
+    mut each: impl FnMut(Group, Vec<TraceRecord>, [f64; 2]) -> Result<ControlFlow<()>, RunError<E>>,
+) -> Result<(), RunError<E>> {
+    assert_eq!(engines.len(), study.models().len(), "each anchor has its engine");
     thread::scope(|scope| {
-        let (ready, groups) = sync_channel::<Result<Group, RunError<E>>>(0);
+        let (ready, waiting) = sync_channel::<Result<Group, RunError<E>>>(0);
         scope.spawn(move || {
-            let mut source = match study.source(study.block(shard.block(first)).start) {
-                Ok(source) => source,
+            let Some((_, numbers)) = study.numbers(shard, places.clone()).next() else { return };
+            let mut drawing = match study.source(numbers.start) {
+                Ok(source) => Drawing { study, shard, source, size, pace: 1 },
                 Err(error) => return drop(ready.send(Err(error.into()))),
             };
-            let mut start = first;
-            while start < all {
-                let numbers = (start..(start + size).min(all)).map(|b| study.block(shard.block(b)));
-                let group = draw(&mut source, start, numbers, job);
-                start = group.as_ref().map_or(all, |group| group.blocks.end);
+            let mut start = places.start;
+            while start < places.end {
+                let group = drawing.next(start..places.end, job);
+                start = group.as_ref().map_or(places.end, |group| group.places.end);
                 if ready.send(group).is_err() {
                     return;
                 }
@@ -106,77 +204,102 @@ pub fn run<E: Send>(
         });
         let mut clock = Instant::now();
         let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
-        for group in groups {
-            let Group { blocks, mut traces, sizes, drawn } = group?;
+        for group in waiting {
+            let mut group = group?;
             let waited = lap();
-            let records = evaluate(study, engines, &mut traces, job)?;
+            let records = evaluate(study, engines, &mut group.traces, job)?;
             let evaluated = lap();
-            let mut traced = traces.iter().zip(&records).map(|(trace, record)| Traced { trace, record });
-            let parts: Vec<Vec<Traced<'_>>> = sizes.iter().map(|&size| traced.by_ref().take(size).collect()).collect();
-            let tallied: Vec<_> = parts.par_iter().map(|part| Counts::of_block(&study.setting, part)).collect();
-            let mut added = 0;
-            for ((block, (moments, counts)), size) in blocks.zip(tallied).zip(sizes) {
-                total.iter_mut().zip(&moments).for_each(|(total, block)| total.merge(block));
-                state.tallies.add(shard.block(block), moments, counts);
-                state.done = block + 1;
-                added += size;
-                state.stopped = stopped(study, &total[1], state.done == all);
-                if state.stopped != Stopped::Unfinished {
-                    break;
-                }
-            }
-            let tallied = lap();
-            state.seconds += waited + evaluated + tallied;
-            if study.plan().until.seconds.is_some_and(|most| state.seconds >= most)
-                && state.stopped == Stopped::Unfinished
-            {
-                state.stopped = Stopped::Seconds;
-            }
-            spent.drawn += drawn;
-            spent.waited += waited;
-            spent.evaluated += evaluated;
-            spent.tallied += tallied;
-            after(state, records, added).map_err(RunError::Caller)?;
-            lap();
-            if state.stopped != Stopped::Unfinished {
+            if each(group, records, [waited, evaluated])?.is_break() {
                 break;
             }
+            lap();
         }
-        Ok(spent)
+        Ok(())
     })
 }
 
-/// How many blocks are worked on at once: enough traces for the engines, and not too many points.
-fn group_size(study: &Study, batch: usize) -> u64 {
-    let block = u64::from(study.plan().run.block);
-    let steps = study.plan().walk.steps().map_or(1024, u64::from);
-    (batch as u64).div_ceil(block).min(POINTS / (block * (steps + 1))).max(1)
+/// Counts a group's traces, block by block: each one's place among the shard's blocks, how many traces it has here, and what
+/// they come to. `open` is what was counted before of the block with which the group goes on.
+fn tally(
+    study: &Study,
+    shard: Shard,
+    group: &Group,
+    records: &[TraceRecord],
+    open: Option<Block>,
+) -> Vec<(u64, usize, Tallied)> {
+    let mut traced = group.traces.iter().zip(records).map(|(trace, record)| Traced { trace, record });
+    let mut first = open.or_else(|| Some(Block::new(&study.setting)));
+    let parts: Vec<_> = study
+        .numbers(shard, group.places.clone())
+        .map(|(index, numbers)| {
+            let count = (numbers.end - numbers.start) as usize;
+            let is_whole = numbers.end == study.block(shard.block(index)).end;
+            let block = first.take().unwrap_or_else(|| Block::new(&study.setting));
+            (index, is_whole, block, traced.by_ref().take(count).collect::<Vec<_>>())
+        })
+        .collect();
+    let count = |(index, is_whole, mut block, part): (u64, bool, Block, Vec<Traced<'_>>)| {
+        block.add(&study.setting, &part);
+        let tallied = if is_whole {
+            let (moments, counts) = block.finish();
+            Tallied::Whole(moments, counts)
+        } else {
+            Tallied::Open(block)
+        };
+        (index, part.len(), tallied)
+    };
+    parts.into_par_iter().map(count).collect()
 }
 
-/// After that time a group is closed though there is room for more, so that a study is stopped and saved in time.
+/// How many traces are worked on at once: enough for the engines, whole blocks if that can be, and not too many points.
+fn group_size(study: &Study, engines: &[Box<dyn Engine + '_>]) -> u64 {
+    let batch = engines.iter().map(|engine| engine.batch()).max().unwrap_or(1);
+    let block = u64::from(study.plan().run.block);
+    let steps = study.plan().walk.steps().map_or(1024, u64::from);
+    let most = (POINTS / (steps + 1)).max(1);
+    let whole = (batch as u64).div_ceil(block).min(most / block) * block;
+    if whole > 0 { whole } else { most }
+}
+
+/// After that time a group is closed though there is room for more, so that what was drawn is evaluated and saved in time.
 const LONGEST: Duration = Duration::from_secs(1);
 
-/// The traces of the blocks from number `first` on whose traces have these `numbers`, as many as are drawn in time.
-fn draw<E>(
-    source: &mut Source<'_>,
-    first: u64,
-    numbers: impl Iterator<Item = Range<u64>>,
-    job: &Job,
-) -> Result<Group, RunError<E>> {
-    let clock = Instant::now();
-    let mut group = Group { blocks: first..first, traces: Vec::new(), sizes: Vec::new(), drawn: 0.0 };
-    for numbers in numbers {
-        job.go_on()?;
-        let block = source.take(numbers)?;
-        group.sizes.push(block.len());
-        group.traces.extend(block);
-        group.blocks.end += 1;
-        if clock.elapsed() > LONGEST {
-            break;
+/// About how long it takes to draw the traces between two looks at the clock.
+const LAP: Duration = Duration::from_millis(50);
+
+/// What draws traces, group after group.
+struct Drawing<'s> {
+    study: &'s Study,
+    shard: Shard,
+    source: Source<'s>,
+    /// How many traces a group has at the most.
+    size: u64,
+    /// How many are drawn between two looks at the clock.
+    pace: u64,
+}
+
+impl Drawing<'_> {
+    /// The first of the traces at these places, as many as are drawn in time. A group that begins within a block ends with it.
+    fn next<E>(&mut self, places: Range<u64>, job: &Job) -> Result<Group, RunError<E>> {
+        let clock = Instant::now();
+        let block = u64::from(self.study.plan().run.block);
+        let start = places.start;
+        let most = if start.is_multiple_of(block) { self.size } else { self.size.min(block - start % block) };
+        let end = places.end.min(start + most);
+        let mut group = Group { places: start..start, traces: Vec::new(), drawn: 0.0 };
+        while group.places.end < end && clock.elapsed() <= LONGEST {
+            job.go_on()?;
+            let lap = Instant::now();
+            let at = group.places.end;
+            let some = at..end.min(at + self.pace);
+            let Some((_, numbers)) = self.study.numbers(self.shard, some).next() else { break };
+            group.places.end += numbers.end - numbers.start;
+            group.traces.extend(self.source.take(numbers)?);
+            self.pace = if lap.elapsed() < LAP { (2 * self.pace).min(self.size) } else { (self.pace / 2).max(1) };
         }
+        group.drawn = clock.elapsed().as_secs_f64();
+        Ok(group)
     }
-    group.drawn = clock.elapsed().as_secs_f64();
-    Ok(group)
 }
 
 /// The records of all traces, in their order. Each is evaluated by the engine of its anchor.
@@ -221,3 +344,6 @@ fn stopped(study: &Study, longest: &Moments, is_last: bool) -> Stopped {
     }
     if is_last { Stopped::Complete } else { Stopped::Unfinished }
 }
+
+#[cfg(test)]
+mod tests;

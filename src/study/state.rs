@@ -1,15 +1,17 @@
 //! How far a study is, in memory and as a file.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
 use std::io::Write;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::opened::Study;
 use super::summary::Stopped;
-use super::tally::Tallies;
+use super::tally::{Block, Tallies};
 use crate::output::{WholeFile, WriteError};
 
 /// What a state file begins with. The number changes when the format does.
@@ -69,10 +71,35 @@ pub struct State {
     pub(super) shard: Shard,
     /// How many of the shard's blocks are done: the first ones.
     pub(super) done: u64,
+    /// What was counted of the block after those, of which only some traces are evaluated.
+    pub(super) open: Option<Block>,
     pub(super) stopped: Stopped,
     /// How long that took, in seconds.
     pub(super) seconds: f64,
     pub(super) tallies: Tallies,
+    /// What is kept beside the state, so that it is known again.
+    pub kept: Kept,
+}
+
+/// A check sum: BLAKE3.
+pub type Check = [u8; blake3::OUT_LEN];
+
+/// What is kept beside a state, with check sums by which it is known again.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Kept {
+    /// Files of rows, in the order of their traces.
+    pub parts: Vec<Part>,
+    /// Other files, by their names.
+    pub files: BTreeMap<String, Check>,
+}
+
+/// A file of rows.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Part {
+    /// Of which traces it has rows: their [places](Study::places) in the shard.
+    pub places: Range<u64>,
+    /// What it holds.
+    pub check: Check,
 }
 
 /// What is said of a state whose study is another one.
@@ -88,6 +115,13 @@ pub struct StateError {
     pub what: String,
 }
 
+impl StateError {
+    /// Whether the state belongs to another study.
+    pub fn is_foreign(&self) -> bool {
+        self.what == FOREIGN
+    }
+}
+
 impl State {
     /// Nothing is done.
     pub fn new(study: &Study, shard: Shard) -> Self {
@@ -97,6 +131,8 @@ impl State {
             identity: study.identity().to_owned(),
             shard,
             done: 0,
+            open: None,
+            kept: Kept::default(),
             stopped: if nothing_to_do { Stopped::Complete } else { Stopped::Unfinished },
             seconds: 0.0,
             tallies: Tallies::default(),
@@ -113,7 +149,13 @@ impl State {
         self.done
     }
 
-    /// How many traces its blocks have.
+    /// How many of the shard's traces are evaluated: the first ones, those of a block that is not done included.
+    pub fn place(&self, study: &Study) -> u64 {
+        let whole = self.done.saturating_mul(study.plan().run.block.into()).min(study.places(self.shard));
+        whole.saturating_add(self.open.as_ref().map_or(0, Block::traces))
+    }
+
+    /// How many traces the blocks have that are done.
     pub fn traces(&self) -> u64 {
         self.tallies.counts.traces.sum
     }
@@ -170,6 +212,11 @@ impl State {
         if state.identity != study.identity() {
             return Err(fault(FOREIGN));
         }
+        let most = study.places(state.shard);
+        let is_open = state.stopped == Stopped::Unfinished && state.place(study) < most;
+        if state.place(study) > most || (state.open.is_some() && !is_open) {
+            return Err(fault("damaged: it counts more traces than there are"));
+        }
         Ok(state)
     }
 }
@@ -191,7 +238,7 @@ pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, 
         && (of, state.stopped == Stopped::Unfinished, &state.identity) == (1, false, &whole.identity)
     {
         // A study that was not shared out, which may have stopped before its last block.
-        return Ok(shards.remove(0).1);
+        return Ok(State { kept: Kept::default(), ..shards.remove(0).1 });
     }
     for (i, (path, state)) in shards.iter().enumerate() {
         let Shard { number, of: parts } = state.shard;

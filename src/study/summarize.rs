@@ -64,20 +64,20 @@ fn scalars(confidence: &Confidence, moments: &[Moments], counts: &Counts) -> Vec
     let traces = counts.traces.sum;
     // The least number below or at which that share of them lies.
     let rank = |share: f64| ((share * traces as f64).ceil() as u64).max(1);
-    let quantile = |i: usize, share: f64| match i {
+    let quantile = |i: usize, rank: u64| match i {
         // A length's class is known, and that no length is beyond the extremes.
-        0 | 1 => counts.lengths[i].of_rank(rank(share)).map(|x| x.clamp(moments[i].min, moments[i].max)),
-        _ => [of_rank(&counts.values[i - 2], rank(share)).unwrap_or(0) as f64; 2],
+        0 | 1 => counts.lengths[i].of_rank(rank).map(|x| x.clamp(moments[i].min, moments[i].max)),
+        _ => [of_rank(&counts.values[i - 2], rank).unwrap_or(0) as f64; 2],
     };
+    let ends = QUANTILES.map(|share| (share, confidence.ranks(share, traces)));
     let scalar = |(i, (name, moments)): (usize, (&&str, &Moments))| {
-        let estimate = |share| {
-            let [low, high] = confidence.ranks(share, traces);
-            let [value, above] = quantile(i, share);
+        let estimate = |share: f64, [low, high]: [Option<u64>; 2]| {
+            let [value, above] = quantile(i, rank(share));
             Estimate {
                 value: value + (above - value) / 2.0,
                 error: None,
-                low: Some(quantile(i, low)[0]),
-                high: Some(quantile(i, high)[1]),
+                low: low.map(|rank| quantile(i, rank)[0]),
+                high: high.map(|rank| quantile(i, rank)[1]),
             }
         };
         Scalar {
@@ -86,7 +86,7 @@ fn scalars(confidence: &Confidence, moments: &[Moments], counts: &Counts) -> Vec
             deviation: moments.variance().map(f64::sqrt),
             min: moments.min,
             max: moments.max,
-            quantiles: QUANTILES.iter().map(|&share| Quantile { share, value: estimate(share) }).collect(),
+            quantiles: ends.map(|(share, ends)| Quantile { share, value: estimate(share, ends) }).to_vec(),
         }
     };
     SCALARS.iter().zip(moments).enumerate().map(scalar).collect()
@@ -125,11 +125,14 @@ fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec
         let n = traces as f64;
         let [left, right] = if y_down { [wound.right, wound.left] } else { [wound.left, wound.right] };
         let mean = if y_down { -wound.turns } else { wound.turns } as f64 / n;
-        let spread = (wound.squares as f64 - n * mean * mean).max(0.0);
+        // In whole numbers, since the difference can be small beside what it is one of.
+        let (turns, count) = (u128::from(wound.turns.unsigned_abs()), u128::from(traces));
+        let spread = (count * u128::from(wound.squares)).saturating_sub(turns * turns) as f64 / n;
         let error = (traces > 1).then(|| (spread / (n - 1.0) / n).sqrt());
         Some(Obstacle {
             vertex,
             at: known.middle.into(),
+            label: label(setting, known.named),
             walls: known.walls,
             wound: confidence.share(left + right, traces),
             left: confidence.share(left, traces),
@@ -140,6 +143,11 @@ fn obstacles(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec
     let mut all: Vec<Obstacle> = counts.wound.iter().filter_map(obstacle).collect();
     all.sort_by(|a, b| b.wound.value.total_cmp(&a.wound.value).then(a.vertex.cmp(&b.vertex)));
     all
+}
+
+/// What the scene's file calls the thing to which a wall end belongs.
+fn label(setting: &Setting, vertex: u32) -> Option<String> {
+    setting.labels.get(vertex as usize).cloned().flatten()
 }
 
 fn ropes(confidence: &Confidence, setting: &Setting, counts: &Counts, most: usize) -> Vec<CommonRope> {
@@ -157,6 +165,10 @@ fn ropes(confidence: &Confidence, setting: &Setting, counts: &Counts, most: usiz
             anchor: setting.models[*anchor as usize].anchor().into(),
             wraps: contacts.iter().map(|c| vertices[*c as usize / 2].into()).collect(),
             sides: contacts.iter().map(|c| side(c).name().to_owned()).collect(),
+            labels: match setting.labels.is_empty() {
+                true => Vec::new(),
+                false => contacts.iter().map(|c| label(setting, *c / 2)).collect(),
+            },
         }
     };
     counts.ropes.top(most).into_iter().map(rope).collect()
@@ -173,6 +185,7 @@ fn contacts(confidence: &Confidence, setting: &Setting, counts: &Counts) -> Vec<
         Contact {
             vertex,
             at: setting.models[0].vertices()[vertex as usize].into(),
+            label: label(setting, vertex),
             wraps: confidence.around(wraps, wraps_error, blocks),
             share: confidence.around(share, share_error, blocks),
         }

@@ -190,6 +190,9 @@ pub struct Obstacle {
     pub vertex: u32,
     /// The point about which the times round are counted: the middle of the first of its walls, x and y.
     pub at: [f64; 2],
+    /// What the scene's file calls it: the label of that wall end, or of the first of its wall ends that has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// How many walls it has.
     pub walls: u32,
     /// The share of ropes that go about it at least once at the end, all the way round.
@@ -218,15 +221,21 @@ pub struct CommonRope {
     /// On which side of the rope the wall end of each turn lies, seen from the anchor: `left` or `right`, as a picture of
     /// the scene shows it.
     pub sides: Vec<String>,
+    /// What the scene's file calls the things there; left out where it calls nothing anything.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub labels: Vec<Option<String>>,
 }
 
 /// How often ropes had a contact with a wall end, contacts passed straight included.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Contact {
     /// Its number in the scene.
     pub vertex: u32,
     /// Where it is.
     pub at: [f64; 2],
+    /// What the scene's file calls the thing to which it belongs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// The number of wraps about it per trace.
     pub wraps: Estimate,
     /// The share of all steps after which the rope has a contact with it, however many: a rope wound round it counts once.

@@ -108,6 +108,7 @@ impl Mesh {
             Mesh { vertices, walls, loose: vec![], names, pivots, triangles: vec![], fans: vec![], first_fan: vec![] };
         mesh.take_triangles(&cdt);
         mesh.close(&cdt, added);
+        mesh.leave_solids(model);
         Some(mesh)
     }
 
@@ -202,13 +203,31 @@ impl Mesh {
 
     /// Leaves the triangles of which it does not hold out of all fans, so that looks never start into them.
     pub(super) fn start_only_in(&mut self, is_kept: &[bool]) {
+        self.keep_spokes(|_, triangle| is_kept[triangle as usize]);
+    }
+
+    /// Leaves out of the anchor's fan what lies inside of a solid on whose border it stands.
+    fn leave_solids(&mut self, model: &Model) {
+        let Some((sectors, solid)) = model.border() else { return };
+        let anchor = self.pivots[self.pivots.len() - 1];
+        let fan: Vec<u32> = self.fan(anchor).to_vec();
+        // A triangle lies to the left of the half-edge that starts at the anchor.
+        let is_solid = |&&spoke: &&u32| match sectors.find(self.at(self.edge(next(spoke)).origin)) {
+            Ok(sector) | Err(sector) => solid[sector],
+        };
+        let left_out: Vec<u32> = fan.iter().filter(is_solid).map(|spoke| spoke / 4).collect();
+        self.keep_spokes(|vertex, triangle| vertex != anchor || !left_out.contains(&triangle));
+    }
+
+    /// Leaves half-edges out of all fans but those of which it holds: of the vertex at which they start and of their triangle.
+    fn keep_spokes(&mut self, is_kept: impl Fn(u32, u32) -> bool) {
         let (mut kept, mut first) = (0, 0);
         for v in 0..self.vertices.len() {
             let end = self.first_fan[v + 1] as usize;
             self.first_fan[v] = kept as u32;
             for i in first..end {
                 self.fans[kept] = self.fans[i];
-                kept += usize::from(is_kept[self.fans[i] as usize / 4]);
+                kept += usize::from(is_kept(v as u32, self.fans[i] / 4));
             }
             first = end;
         }

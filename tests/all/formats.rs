@@ -153,7 +153,7 @@ fn a_map_of_a_map_server() {
         let covered = (0..map.walls().len()).map(|w| map.ends(w)).any(|[c, d]| c == a && d == b);
         assert_eq!(covered, ![[2, 2], [5, 2]].contains(&from), "{from:?} {to:?}");
     }
-    assert_eq!(map.notes().len(), 2);
+    assert_eq!(map.notes().len(), 3);
     let blocked = SceneOptions { unknown: Unknown::Blocked, ..Default::default() };
     let blocked = read_scene_with(&file("map.yaml"), &blocked).unwrap();
     assert!(blocked.walls().len() < map.walls().len(), "the room's outer side is no border any more");

@@ -133,6 +133,7 @@ fn answer(scene: &Scene) -> Summary {
             anchor: anchor.into(),
             sides: (0..wraps.len()).map(|k| if (k + i) % 2 == 0 { "left" } else { "right" }.to_string()).collect(),
             wraps,
+            labels: vec![],
         }
     });
     let ropes = if near.is_empty() { Vec::new() } else { ropes.collect() };
@@ -165,13 +166,22 @@ fn answer(scene: &Scene) -> Summary {
             .map(|(i, &(vertex, at))| {
                 let wound = 0.2 / (i as f64 + 1.0);
                 let (left, right) = (about(wound * 0.7), about(wound * 0.3));
-                Obstacle { vertex, at: at.into(), walls: 9, wound: about(wound), left, right, mean: about(wound * 0.4) }
+                Obstacle {
+                    vertex,
+                    at: at.into(),
+                    label: None,
+                    walls: 9,
+                    wound: about(wound),
+                    left,
+                    right,
+                    mean: about(wound * 0.4),
+                }
             })
             .collect(),
         ropes,
         contacts: near
             .iter()
-            .map(|&(vertex, at)| Contact { vertex, at: at.into(), wraps: about(1.2), share: about(0.11) })
+            .map(|&(vertex, at)| Contact { vertex, at: at.into(), label: None, wraps: about(1.2), share: about(0.11) })
             .collect(),
         map: Some(map),
     }
@@ -241,7 +251,8 @@ fn least(scene: &Scene) -> Summary {
     summary.scalars[0].quantiles.clear();
     let point = |step, share| SurvivalPoint { step, share: bare(share) };
     summary.survival = vec![Survival { limit: 8.0, curve: vec![point(0, 1.0), point(10, 0.0)] }];
-    let rope = CommonRope { count: 10, at_most: 10, share: bare(1.0), anchor, wraps: vec![], sides: vec![] };
+    let rope =
+        CommonRope { count: 10, at_most: 10, share: bare(1.0), anchor, wraps: vec![], sides: vec![], labels: vec![] };
     summary.ropes = vec![rope];
     let cell = Cell { cell: 0, visits: 3, length: Some(bare(1.0)), contacts: bare(0.5) };
     let low = scene.vertices().iter().copied().reduce(DVec2::min).unwrap_or_default();

@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 use std::f64::consts::PI;
+use std::sync::Mutex;
 
 use glam::DVec2;
 use tautline::engine::{Cpu, Engine, Job, Reference};
@@ -15,9 +16,9 @@ use tautline::trace::{Trace, settle};
 fn answer(plan: &str, folder: &std::path::Path) -> Summary {
     let study = Study::open(Plan::parse(plan).unwrap(), folder).unwrap();
     let mut engines: Vec<Box<dyn Engine + '_>> = study.models().iter().map(|m| Box::new(Cpu::new(m)) as _).collect();
-    let mut state = State::new(&study, Shard::WHOLE);
-    run(&study, &mut engines, &mut state, &Job::new(), |_, _, _| Ok::<(), Infallible>(())).unwrap();
-    state.summary(&study)
+    let state = Mutex::new(State::new(&study, Shard::WHOLE));
+    run(&study, &mut engines, &state, &Job::new(), |_, _, _| Ok::<(), Infallible>(())).unwrap();
+    state.into_inner().unwrap().summary(&study)
 }
 
 fn mean(summary: &Summary, name: &str) -> Estimate {

@@ -94,9 +94,14 @@ pub(crate) fn compare_with_cases(engine: impl for<'m> Fn(&'m Model) -> Box<dyn E
     assert!(judged > 15_000, "only {judged} ropes were judged");
 }
 
-/// The software adapter. A machine without one fails: the GPU engine is never left untested.
+/// The software adapter. A machine without one fails: the GPU engine is never left untested. So does one on which it is not
+/// the one that `TAUTLINE_TEST_ADAPTER` names, if that is set.
 pub(crate) fn software() -> Device {
-    Device::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}"))
+    let device = Device::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}"));
+    if let Ok(name) = std::env::var("TAUTLINE_TEST_ADAPTER") {
+        assert!(device.summary().name.contains(&name), "{} is not {name}", device.summary());
+    }
+    device
 }
 
 /// The `gpu` engine on the software adapter, which it asks about every pivot.

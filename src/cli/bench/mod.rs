@@ -12,11 +12,11 @@ use tautline::gpu::{AdapterChoice, Device};
 use tautline::report::Environment;
 use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured, Plan, Setting, Sweep, measure};
 
-use super::engine::named;
+use super::engine::{named, notes};
 use super::failure::Failure;
-use super::input::point;
+use super::input::{FileArgs, point};
 use super::progress::Runs;
-use super::{interrupt, named_scene, print, print_json};
+use super::{named_scene, print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -26,6 +26,8 @@ pub(crate) struct Args {
     /// Where the rope is tied in a scene file; overrides what the file says
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     anchor: Option<DVec2>,
+    #[command(flatten)]
+    file: FileArgs,
     /// The length of a step, about, in the scene's unit [default: 0.01 in random-M, 0.1 in lattice-M, 0.25 in rooms, a
     /// tenth of the mean distance between walls in files]
     #[arg(long, value_name = "LENGTH", value_parser = length)]
@@ -48,7 +50,7 @@ pub(crate) struct Args {
     /// Only this engine; may be given several times
     #[arg(long, value_name = "ENGINE", value_parser = ["gpu", "cpu", "funnel", "note", "reference"])]
     engine: Vec<String>,
-    /// Which GPU: part of its name, or `software`
+    /// Which GPU: part of its name, its number in `tautline adapters`, or `software`
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// The most steps that one query covers
@@ -92,7 +94,6 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::listen()?;
     let base = args.setting()?;
     let sweep = args.sweep.map(SweepName::sweep);
     let settings = match sweep {
@@ -156,7 +157,7 @@ fn failure(error: BenchError) -> Failure {
 
 impl Args {
     fn setting(&self) -> Result<Setting, Failure> {
-        let scene = named_scene::open(&self.scene, self.anchor)?;
+        let scene = named_scene::open(&self.scene, self.anchor, &self.file)?;
         Ok(Setting {
             step: self.step.unwrap_or_else(|| scene.step()),
             scene,
@@ -194,9 +195,11 @@ impl Args {
 
 /// The GPU called `adapter`, else the best. One that nobody asked for may be missing.
 pub(super) fn open_device(adapter: Option<&str>, is_asked_for: bool) -> Result<Option<Device>, Failure> {
-    match Device::open(&adapter.map_or(AdapterChoice::Best, named)) {
+    let choice = adapter.map_or(AdapterChoice::Best, named);
+    match Device::open(&choice) {
         Ok(device) => {
             say!("engine: gpu on {}", device.summary());
+            notes(&choice, &device).iter().for_each(|note| say!("{note}"));
             Ok(Some(device))
         }
         Err(error) if adapter.is_some() || is_asked_for => Err(error.into()),

@@ -1,6 +1,8 @@
 //! `tautline study`.
 
 mod folder;
+mod keeper;
+mod lock;
 mod merge;
 mod parts;
 mod replay;
@@ -9,10 +11,12 @@ mod show;
 
 use std::path::PathBuf;
 
+use anyhow::anyhow;
 use clap::Subcommand;
-use tautline::study::{EXAMPLE, Plan, Summary};
+use tautline::study::{EXAMPLE, Plan, Shard, Summary};
 
 use super::failure::Failure;
+use super::look::write_whole;
 use super::{examples, print, print_json};
 
 #[derive(Debug, clap::Args)]
@@ -86,8 +90,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 fn init(args: &InitArgs) -> Result<(), Failure> {
     let name = args.file.display();
-    let failed = |e: std::io::Error| Failure::system(e.kind(), anyhow::anyhow!("cannot write {name}: {e}"));
-    let mut file = std::fs::File::create_new(&args.file).map_err(failed)?;
-    std::io::Write::write_all(&mut file, EXAMPLE.as_bytes()).map_err(failed)?;
+    if args.file.symlink_metadata().is_ok() {
+        return Err(Failure::input(anyhow!("cannot write {name}: it is there already; give another name")));
+    }
+    write_whole(&args.file, EXAMPLE.as_bytes())?;
     print(&format!("wrote {name}; run it with: tautline study run {name}\n"))
+}
+
+/// Reads K/N.
+fn shard(text: &str) -> Result<Shard, String> {
+    let wrong = || "give K/N with K from 0 to N - 1, such as 0/4".to_owned();
+    let (number, of) = text.split_once('/').ok_or_else(wrong)?;
+    let [number, of] = [number, of].map(|n| n.parse::<u32>().map_err(|_| wrong()));
+    Shard::new(number?, of?).ok_or_else(wrong)
 }

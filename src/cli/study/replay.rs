@@ -7,7 +7,7 @@ use glam::DVec2;
 use tautline::engine::{Engine, FastGpu, Job, Precision, Reference};
 use tautline::geometry::number as shortest;
 use tautline::gpu::{AdapterChoice, Device};
-use tautline::output::{check_output, write_events};
+use tautline::output::{EventWriter, check_output};
 use tautline::picture::Drawing;
 
 use super::folder::{BaseArgs, Folder};
@@ -86,7 +86,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         write(target, &Drawing::new(model).with(&trace, &record), &args.look)?;
     }
     if let Some(path) = &args.events {
-        write_events(path, model.scene(), std::slice::from_ref(&record))?;
+        let mut events = EventWriter::create_labelled(path, model.scene())?;
+        events.write(model.scene(), &record)?;
+        events.finish()?;
     }
     if let Some(path) = &args.points {
         write_whole(path, rows(args.trace, &study.whole_trace(args.trace)?.ends()).as_bytes())?;

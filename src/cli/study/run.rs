@@ -1,37 +1,37 @@
 //! `tautline study run` and `tautline study resume`.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use serde_json::json;
-use tautline::engine::{Engine, EngineError, Job};
+use tautline::engine::{Engine, Job};
 use tautline::picture;
 use tautline::report::Environment;
-use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go};
+use tautline::study::{
+    EXAMPLE, Plan, PlanError, RunError, Shard, Spent, State, Stopped, Study, Summary, run as go, run_again as go_again,
+};
 
-use super::folder::{BaseArgs, Folder, RUN_REPORT};
-use super::parts::Parts;
-use super::show;
+use super::folder::{BaseArgs, Folder, PAGE, RUN_REPORT, SUMMARY};
+use super::keeper::Keeper;
+use super::parts::{self, Parts};
+use super::{shard, show};
 use crate::cli::engine::{EngineArgs, of_studies};
 use crate::cli::failure::Failure;
-use crate::cli::input::note;
-use crate::cli::interrupt::{self, Writing};
+use crate::cli::input::{note, warn};
+use crate::cli::interrupt::{Guard, Last};
 use crate::cli::progress::{Progress, with_progress};
 use crate::cli::summary::precision;
 use crate::cli::trade::{self, TradeArgs};
 use crate::cli::{print, print_json};
-
-/// How often the state is saved.
-const CHECKPOINT: Duration = Duration::from_secs(10);
 
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("engine", of_studies))]
 pub(crate) struct RunArgs {
     /// The study's file (TOML); without one, the built-in example
     file: Option<PathBuf>,
-    /// The folder for what comes out; must not hold a study yet
+    /// The folder for what comes out; one that holds this study already is gone on with [default: NAME-study]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// How many traces, instead of what the file says
@@ -69,15 +69,10 @@ pub(crate) struct ResumeArgs {
     json: bool,
 }
 
-fn shard(text: &str) -> Result<Shard, String> {
-    let wrong = || "give K/N with K from 0 to N - 1, such as 0/4".to_owned();
-    let (number, of) = text.split_once('/').ok_or_else(wrong)?;
-    let [number, of] = [number, of].map(|n| n.parse::<u32>().map_err(|_| wrong()));
-    Shard::new(number?, of?).ok_or_else(wrong)
-}
+/// How many anchors are looked at for whether they stand where they were meant to.
+const WARNED: usize = 8;
 
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
-    interrupt::listen()?;
     let (mut plan, base) = match &args.file {
         Some(file) => (Plan::read(file)?, file.parent().map(Path::to_owned).unwrap_or_default()),
         None => (Plan::parse(EXAMPLE)?, PathBuf::new()),
@@ -102,6 +97,8 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     study.check_moves().map_err(located)?;
     if let Some(file) = &study.plan().scene.file {
         note(file, study.models()[0].scene());
+        // Sampled anchors lie in the free space of the first one.
+        study.models().iter().take(WARNED).for_each(|model| warn(&file.display().to_string(), model));
     }
     if args.dry_run {
         return dry_run(&study, args);
@@ -112,23 +109,47 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     } else {
         format!("-{}", args.shard.to_string().replace('/', "-of-"))
     };
-    let out = args.out.clone().unwrap_or_else(|| Folder::unused(&format!("{stem}-study{part}")));
-    let _writing = Writing::begin();
-    interrupt::check()?;
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-study{part}")));
     // An engine that is refused leaves no folder behind.
     let engines = Engines::open(&args.engine, &study)?;
-    let folder = Folder::create(&out)?;
-    folder.remember(study.plan(), &base)?;
-    let state = State::new(&study, args.shard);
+    let folder = Arc::new(Folder::make(&out)?);
+    let guard = Guard::new(Last::TakeBack(Box::new({
+        let folder = folder.clone();
+        move || folder.take_back()
+    })));
+    let ended = begin(&folder, &study, &base, args.shard)
+        .and_then(|state| proceed(&folder, &guard, &study, state, engines, args.json));
+    if ended.is_err() {
+        folder.take_back();
+    }
+    ended
+}
+
+/// How far a folder is with this part of a study, which it remembers from now on.
+fn begin(folder: &Folder, study: &Study, base: &Path, part: Shard) -> Result<State, Failure> {
+    let held = folder.held(study, part)?;
+    if let Some(state) = &held {
+        let (shown, done, all) = (folder.path().display(), state.place(study), study.places(part));
+        match state.stopped() {
+            Stopped::Unfinished => say!("note: {shown} holds {done} of {all} traces of this study already"),
+            _ => say!("note: {shown} holds the answer of this study already"),
+        }
+    }
+    // What is written besides the answer may be asked for in another way than before.
+    folder.remember(study.plan(), base, part)?;
+    let state = held.unwrap_or_else(|| State::new(study, part));
     folder.save(&state)?;
-    proceed(&folder, &study, state, engines, args.json)
+    Ok(state)
 }
 
 pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
-    interrupt::listen()?;
-    let _writing = Writing::begin();
-    interrupt::check()?;
-    let (folder, study, state) = Folder::open(&args.folder, &args.base)?;
+    let shown = args.folder.display().to_string();
+    let guard = Guard::new(Last::Save(Box::new(move || {
+        Failure::checkpoint(anyhow!("stopped before it went on: do so with `tautline study resume {shown}`"))
+    })));
+    let folder = Arc::new(Folder::go_on(&args.folder)?);
+    let (study, _) = folder.study(&args.base)?;
+    let state = folder.state_or_new(&study)?;
     let begun = study.plan().run.precision;
     if args.engine.precision().is_some_and(|asked| asked != begun) {
         return Err(Failure::input(anyhow!(
@@ -136,71 +157,79 @@ pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
             begun.name()
         )));
     }
-    proceed(&folder, &study, state, Engines::open(&args.engine, &study)?, args.json)
+    let engines = Engines::open(&args.engine, &study)?;
+    proceed(&folder, &guard, &study, state, engines, args.json)
 }
 
-/// Goes on until the end or Ctrl-C, and writes what there is to say.
+/// Goes on until the end, and writes what there is to say.
 fn proceed(
-    folder: &Folder,
+    folder: &Arc<Folder>,
+    guard: &Guard,
     study: &Study,
     mut state: State,
     Engines { mut engines, on }: Engines<'_>,
     as_json: bool,
 ) -> Result<(), Failure> {
-    let job = Arc::new(Job::new());
-    interrupt::stops(&job);
+    let job = Job::new();
     let name = (engines[0].name(), precision(&*engines[0]));
-    let left = state.shard().count(study.plan().blocks()).saturating_sub(state.done());
-    let traces = left * u64::from(study.plan().run.block);
+    let (parts, gaps) = if study.plan().outputs.traces {
+        Parts::open(folder, study, &mut state, provenance(study, name, &on))?
+    } else {
+        if !std::mem::take(&mut state.kept.parts).is_empty() {
+            parts::clear(folder)?;
+        }
+        (None, Vec::new())
+    };
+    let (traces_before, mut place) = (state.traces(), state.place(study));
+    let (shard, is_done) = (state.shard(), state.stopped() != Stopped::Unfinished);
+    let left = if is_done { 0 } else { study.places(shard) - place };
+    let traces = left + gaps.iter().map(|gap| gap.end - gap.start).sum::<u64>();
     let steps = study.plan().walk.steps().map_or(0, |steps| traces * u64::from(steps));
     let progress = Progress::new(if steps > 0 { traces } else { 0 });
     progress.begin(traces, steps);
-    let mut parts = match study.plan().outputs.traces {
-        true => Parts::open(folder.path(), &state, provenance(study, name, &on))?,
-        false => None,
-    };
-    let traces_before = state.traces();
-    let (start, mut saved, mut written) = (Instant::now(), Instant::now(), state.done());
+    let keeper = Arc::new(Keeper::new(folder.clone(), study, state, parts));
+    guard.change(Last::Save(Box::new({
+        let keeper = keeper.clone();
+        move || keeper.stop()
+    })));
+    let start = Instant::now();
     let outcome = with_progress(&progress, &job, || {
-        go(study, &mut engines, &mut state, &job, |state, records, added| {
-            if let Some(parts) = &mut parts {
-                parts.write(written, study.models()[0].scene(), &records[..added])?;
-                written = state.done();
-            }
-            if saved.elapsed() >= CHECKPOINT {
-                // First the rows: those that the state does not know of yet are written again.
-                parts.as_mut().map_or(Ok(()), Parts::close)?;
-                folder.save(state)?;
-                saved = Instant::now();
-            }
-            Ok::<(), Failure>(())
+        for gap in gaps {
+            let mut next = gap.start;
+            go_again(study, &mut engines, shard, gap, &job, |records| {
+                let first = next;
+                next += records.len() as u64;
+                keeper.add_again(first, &records)
+            })?;
+            keeper.keep().map_err(RunError::Caller)?;
+        }
+        go(study, &mut engines, &keeper.state, &job, |state, records, added| {
+            let first = place;
+            place += added as u64;
+            keeper.add(state, first, &records[..added])
         })
     });
     let ended = match outcome {
         Ok(spent) => Ok(spent),
-        Err(RunError::Engine(EngineError::Stopped)) => {
-            let (done, shown) = (state.done(), folder.path().display());
-            let all = state.shard().count(study.plan().blocks());
-            Err(Failure::checkpoint(anyhow!(
-                "stopped; {done} of {all} blocks are saved: go on with `tautline study resume {shown}`"
-            )))
-        }
         Err(RunError::Engine(error)) => Err(error.into()),
         Err(RunError::Plan(error)) => Err(error.into()),
         // Rows may be lost that the state counts: what was saved before stands.
         Err(RunError::Caller(failure)) => return Err(failure),
     };
-    parts.as_mut().map_or(Ok(()), Parts::close)?;
-    folder.save(&state)?;
-    let spent = ended?;
-    parts.map_or(Ok(()), |parts| parts.finish(state.traces()))?;
+    let spent = match (keeper.keep(), ended) {
+        (kept, Ok(spent)) => kept.map(|()| spent)?,
+        // The first fault is the one to be told.
+        (_, Err(failure)) => return Err(failure),
+    };
+    keeper.finish_rows()?;
+    let mut state = keeper.state();
     let done = [state.traces() - traces_before, job.steps()];
     let mut run = cost(&state, name, &on, start.elapsed(), &spent, done);
     run["scene"] = tried(study, &engines);
     // Where nothing was left to do, what was said of the run that did it stands.
-    let before = if done[0] == 0 { folder.run_report() } else { None };
+    let before = if done[0] == 0 { folder.run_report(&state) } else { None };
     let run = before.unwrap_or(run);
-    conclude(folder, study, &state, &run, as_json)
+    conclude(folder, study, &mut state, &run, as_json)
 }
 
 /// The engines, one for each anchor, and in words what they run on.
@@ -275,19 +304,26 @@ fn tried(study: &Study, engines: &[Box<dyn Engine + '_>]) -> serde_json::Value {
     json!({"vertices": study.models()[0].vertices().len(), "remaining": remaining})
 }
 
+/// A report as it is written.
+pub(super) fn pretty(report: &serde_json::Value) -> String {
+    format!("{report:#}\n")
+}
+
 /// Writes and prints the answer. Exit code 5 if it is not as certain as was asked for.
 pub(super) fn conclude(
     folder: &Folder,
     study: &Study,
-    state: &State,
+    state: &mut State,
     run: &serde_json::Value,
     as_json: bool,
 ) -> Result<(), Failure> {
     let summary = state.summary(study);
-    let pretty = |value: &serde_json::Value| format!("{value:#}\n");
     let answer = serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?;
-    folder.write("summary.json", pretty(&answer).as_bytes())?;
-    folder.write(RUN_REPORT, pretty(run).as_bytes())?;
+    folder.write(SUMMARY, pretty(&answer).as_bytes())?;
+    let report = pretty(run);
+    folder.write(RUN_REPORT, report.as_bytes())?;
+    state.kept.files.insert(RUN_REPORT.to_owned(), blake3::hash(report.as_bytes()).into());
+    folder.save(state)?;
     if study.plan().outputs.pictures {
         draw(folder, &summary, study, run)?;
     }
@@ -318,7 +354,7 @@ fn draw(folder: &Folder, summary: &Summary, study: &Study, run: &serde_json::Val
         folder.write(&format!("{name}.png"), &png)?;
     }
     let shown: Vec<_> = pictures.into_iter().map(|(_, title, svg)| (title, svg)).collect();
-    folder.write("report.html", picture::page(summary, &shown, Some(run)).as_bytes())
+    folder.write(PAGE, picture::page(summary, &shown, Some(run)).as_bytes())
 }
 
 /// Does the first blocks, to say what all of them would cost.
@@ -326,10 +362,10 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     let plan = study.plan();
     let Engines { mut engines, on } = Engines::open(&args.engine, study)?;
     let (name, precision) = (engines[0].name(), precision(&*engines[0]));
-    let mut state = State::new(study, args.shard);
+    let state = Mutex::new(State::new(study, args.shard));
     let clock = Instant::now();
     let mut first = None;
-    let outcome = go(study, &mut engines, &mut state, &Job::new(), |_, _, traces| {
+    let outcome = go(study, &mut engines, &state, &Job::new(), |_, _, traces| {
         first = Some((traces, clock.elapsed()));
         Err(())
     });
@@ -349,7 +385,7 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
         let share = plan.run.count() as f64 / f64::from(args.shard.of()) / traces as f64;
         let all = Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX);
         text += &format!("about {}, going by the first {traces} of the traces\n", show::duration(all));
-        if let Some(steps) = show::standing(&state.summary(study)) {
+        if let Some(steps) = show::standing(&state.lock().unwrap_or_else(PoisonError::into_inner).summary(study)) {
             text += &format!("{steps} in these\n");
         }
     }

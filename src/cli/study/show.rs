@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use tautline::study::{AtWalls, Estimate, Stopped, Summary, quantity};
 
-use super::folder::{BaseArgs, Folder};
+use super::folder::{BaseArgs, Folder, SUMMARY};
+use super::run::pretty;
 use crate::cli::failure::Failure;
 use crate::cli::summary::{grouped, short};
 use crate::cli::trade;
@@ -24,10 +25,20 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let (_, study, state) = Folder::open(&args.folder, &args.base)?;
+    let (folder, study, state) = Folder::open(&args.folder, &args.base)?;
     let summary = state.summary(&study);
+    let answer = serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?;
+    let file = folder.file(SUMMARY);
+    let is_other = match std::fs::read(&file) {
+        Ok(bytes) => bytes != pretty(&answer).as_bytes(),
+        Err(_) => state.stopped() != Stopped::Unfinished,
+    };
+    if is_other {
+        let (file, shown) = (file.display(), folder.path().display());
+        say!("note: {file} does not hold this answer; `tautline study resume {shown}` writes it");
+    }
     if args.json {
-        return print_json(&serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?);
+        return print_json(&answer);
     }
     print(&table(&summary, None))
 }
@@ -112,6 +123,7 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     }
     for obstacle in summary.obstacles.iter().take(5) {
         let at = format!("({}, {})", short(obstacle.at[0]), short(obstacle.at[1]));
+        let at = obstacle.label.as_ref().map_or(at.clone(), |label| format!("{label} {at}"));
         line(format_args!("  {at:24}  {:>7}  {}", percent(obstacle.wound.value), shares(&obstacle.wound)));
     }
     if !summary.ropes.is_empty() {
@@ -123,7 +135,9 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
             1 => "1 turn".to_owned(),
             n => format!("{n} turns"),
         };
-        line(format_args!("  {turns:24}  {:>7}  {}", percent(rope.share.value), shares(&rope.share)));
+        let names: Vec<&str> = rope.labels.iter().flatten().map(String::as_str).collect();
+        let names = if names.is_empty() { String::new() } else { format!("  round {}", names.join(", ")) };
+        line(format_args!("  {turns:24}  {:>7}  {}{names}", percent(rope.share.value), shares(&rope.share)));
     }
     text
 }

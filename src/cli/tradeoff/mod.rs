@@ -20,11 +20,11 @@ use tautline::trace::{Trace, read_traces};
 
 use super::bench::{length, open_device};
 use super::failure::Failure;
-use super::input::{above_zero, point};
+use super::input::{FileArgs, above_zero, point};
 use super::look::write_whole;
 use super::progress::Runs;
 use super::trade::stride;
-use super::{interrupt, named_scene, print, print_json};
+use super::{named_scene, print, print_json};
 
 /// The seed of built-in walks and scenes unless told otherwise.
 const SEED: u64 = 1;
@@ -49,6 +49,8 @@ pub(crate) struct Args {
     /// Where the rope is tied in a scene file; overrides what the file says
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     anchor: Option<DVec2>,
+    #[command(flatten)]
+    file: FileArgs,
     /// The traces: .csv or .parquet [default: random walks]
     #[arg(long, value_name = "FILE")]
     traces: Option<PathBuf>,
@@ -73,7 +75,7 @@ pub(crate) struct Args {
     /// Only this engine's methods; may be given several times
     #[arg(long, value_name = "ENGINE", value_parser = ["gpu", "cpu", "funnel", "note", "reference"])]
     engine: Vec<String>,
-    /// Which GPU: part of its name, or `software`
+    /// Which GPU: part of its name, its number in `tautline adapters`, or `software`
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// How often every method runs at every setting
@@ -91,9 +93,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    interrupt::listen()?;
     let diagram = args.out.as_deref().map(Diagram::new).transpose()?;
-    let scene = named_scene::open(&args.scene, args.anchor)?;
+    let scene = named_scene::open(&args.scene, args.anchor, &args.file)?;
     let methods = args.methods();
     let device = args.device(&methods)?;
     let work = args.work(&scene)?;

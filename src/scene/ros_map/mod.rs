@@ -1,5 +1,6 @@
 //! Maps of ROS's `map_server`: the borders between occupied and other cells are the walls.
 
+mod cell;
 mod yaml;
 
 use std::path::Path;
@@ -7,10 +8,11 @@ use std::path::Path;
 use glam::DVec2;
 
 use super::cells::{self, borders};
-use super::image::{self, Pixel};
-use super::{Scene, Unknown};
+use super::image;
+use super::{Ros, Scene, Unknown};
 use crate::read_error::{Fault, Place, ReadError};
 use crate::read_file::{SETTINGS_MAX, read_text};
+use cell::Cell;
 use yaml::values;
 
 /// How many walls a map may have. Images as small as a few bytes can hold far more.
@@ -39,29 +41,17 @@ enum Mode {
     Raw,
 }
 
-/// What a cell is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Cell {
-    Occupied,
-    Unknown,
-    /// Free, or occupied by a chance that is not enough.
-    Other,
-}
-
 /// Reads a map and the image that it names, relative to the map's own folder. Coordinates are metres in the map's frame,
 /// y upwards. What lies around the image is no cell: its outer edge is no wall.
-pub(super) fn read(path: &Path, unknown: Unknown) -> Result<Scene, ReadError> {
+pub(super) fn read(path: &Path, ros: Ros, unknown: Unknown) -> Result<Scene, ReadError> {
     let text = read_text(path, SETTINGS_MAX)?;
     let map = parse(&text).map_err(|fault| fault.in_file(path))?;
     let image = path.parent().unwrap_or(Path::new("")).join(&map.image);
-    let mut unknowns = 0;
-    let bits = image::read(&image, |pixel| match map.cell(pixel) {
-        Cell::Occupied => true,
-        Cell::Unknown => {
-            unknowns += 1;
-            unknown == Unknown::Blocked
-        }
-        Cell::Other => false,
+    let mut counts = Counts::default();
+    let bits = image::read(&image, |pixel| {
+        let cell = map.cell(pixel, ros);
+        counts.add(cell);
+        cell == Cell::Occupied || cell == Cell::Unknown && unknown == Unknown::Blocked
     })?;
     let (sin, cos) = libm::sincos(map.yaw);
     let turn = DVec2::new(cos, sin);
@@ -79,38 +69,48 @@ pub(super) fn read(path: &Path, unknown: Unknown) -> Result<Scene, ReadError> {
     let scene = cells::scene(walls, corner, true);
     let mut scene = scene.map_err(|fault| Fault::from(fault).in_file(path))?;
     scene.note("a unit is 1 m; y points up");
-    if unknowns > 0 {
+    let (followed, other, argument) = match ros {
+        Ros::Two => ("nav2's map_server of ROS 2", "ROS 1's map_server", 1),
+        Ros::One => ("map_server of ROS 1", "nav2's of ROS 2", 2),
+    };
+    scene.note(format!("cells are occupied as {followed} has it (as {other}: --ros {argument})"));
+    if counts.unknown > 0 {
         let (are, other) = match unknown {
             Unknown::Free => ("no obstacles", "blocked"),
             Unknown::Blocked => ("obstacles", "free"),
         };
-        scene.note(format!("unknown cells, which are {are} (the other way: --unknown {other}): {unknowns}"));
+        let count = counts.unknown;
+        scene.note(format!("unknown cells, which are {are} (the other way: --unknown {other}): {count}"));
+    }
+    if let Some(which) = counts.uniform(unknown) {
+        scene.note(format!("{which}, so there are no walls; {}", map.rule(ros)));
     }
     Ok(scene)
 }
 
-impl Map {
-    /// What `map_server` makes of a pixel.
-    fn cell(&self, pixel: Pixel) -> Cell {
-        let shade = match (pixel.alpha, self.mode) {
-            // As it always did, it counts alpha among the colours here.
-            (Some((alpha, colours)), Mode::Trinary) => (pixel.shade * colours + alpha) / (colours + 1.0),
-            _ => pixel.shade,
-        };
-        if self.mode == Mode::Raw {
-            return match (shade * 255.0).round() as u8 {
-                100 => Cell::Occupied,
-                101.. => Cell::Unknown,
-                _ => Cell::Other,
-            };
-        }
-        let chance = if self.negate { shade } else { 1.0 - shade };
-        let seen_through = pixel.alpha.is_some_and(|(alpha, _)| alpha < 1.0);
-        match self.mode {
-            Mode::Scale if seen_through => Cell::Unknown,
-            _ if chance > self.occupied => Cell::Occupied,
-            Mode::Trinary if chance >= self.free => Cell::Unknown,
-            _ => Cell::Other,
+/// How many cells are what.
+#[derive(Default)]
+struct Counts {
+    occupied: usize,
+    unknown: usize,
+    all: usize,
+}
+
+impl Counts {
+    fn add(&mut self, cell: Cell) {
+        self.all += 1;
+        self.occupied += usize::from(cell == Cell::Occupied);
+        self.unknown += usize::from(cell == Cell::Unknown);
+    }
+
+    /// What is said of a map whose cells are all obstacles or all none.
+    fn uniform(&self, unknown: Unknown) -> Option<String> {
+        let blocked = self.occupied + if unknown == Unknown::Blocked { self.unknown } else { 0 };
+        match self.all - blocked {
+            0 if blocked == self.occupied => Some(format!("all {} cells count as occupied", self.all)),
+            0 => Some(format!("all {} cells count as occupied or unknown", self.all)),
+            free if free == self.all => Some(format!("none of the {} cells counts as occupied", self.all)),
+            _ => None,
         }
     }
 }
@@ -133,15 +133,18 @@ fn parse(text: &str) -> Result<Map, Fault> {
         return Err(get("resolution")?.fault("resolution", METRES));
     }
     let [x, y, yaw] = get("origin")?.numbers("origin", "three numbers, [x, y, yaw]")?;
-    let right = "0 or 1";
+    let right = "0 or 1, yes or no, true or false";
     let negate = match get("negate")?.text("negate", right)? {
-        "0" | "false" | "False" => false,
-        "1" | "true" | "True" => true,
-        _ => return Err(get("negate")?.fault("negate", right)),
+        "0" => false,
+        "1" => true,
+        word => match truth(word) {
+            Some(truth) => truth,
+            None => return Err(get("negate")?.fault("negate", right)),
+        },
     };
     let mode = match values.iter().find(|(k, _)| k == "mode") {
         None => Mode::Trinary,
-        Some((_, value)) => match value.text("mode", MODES)? {
+        Some((_, value)) => match value.text("mode", MODES)?.to_ascii_lowercase().as_str() {
             "trinary" => Mode::Trinary,
             "scale" => Mode::Scale,
             "raw" => Mode::Raw,
@@ -150,6 +153,23 @@ fn parse(text: &str) -> Result<Map, Fault> {
     };
     let (occupied, free) = (chance("occupied_thresh")?, chance("free_thresh")?);
     Ok(Map { image, resolution, origin: DVec2::new(x, y), yaw, negate, occupied, free, mode })
+}
+
+/// The words of YAML 1.1 for a truth value, in small letters, in capitals, or with one capital in front.
+fn truth(word: &str) -> Option<bool> {
+    let small = word.to_ascii_lowercase();
+    let capital = |(i, b): (usize, u8)| if i == 0 { b.to_ascii_uppercase() } else { b };
+    let spellings = [
+        small.clone().into_bytes(),
+        small.to_ascii_uppercase().into_bytes(),
+        small.bytes().enumerate().map(capital).collect(),
+    ];
+    match small.as_str() {
+        _ if !spellings.iter().any(|s| s == word.as_bytes()) => None,
+        "y" | "yes" | "true" | "on" => Some(true),
+        "n" | "no" | "false" | "off" => Some(false),
+        _ => None,
+    }
 }
 
 const KEYS: [&str; 6] = ["image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"];
@@ -174,7 +194,7 @@ mod tests {
         std::fs::write(folder.path().join("map.pgm"), pgm).unwrap();
         let path = folder.path().join("map.yaml");
         std::fs::write(&path, text).unwrap();
-        read(&path, unknown).unwrap()
+        read(&path, Ros::Two, unknown).unwrap()
     }
 
     fn walls(scene: &Scene) -> Vec<[f64; 4]> {
@@ -206,33 +226,37 @@ mod tests {
             free.notes(),
             [
                 "a unit is 1 m; y points up",
+                "cells are occupied as nav2's map_server of ROS 2 has it (as ROS 1's map_server: --ros 1)",
                 "unknown cells, which are no obstacles (the other way: --unknown blocked): 1"
             ]
         );
-        assert_eq!(blocked.notes()[1], "unknown cells, which are obstacles (the other way: --unknown free): 1");
-        assert_eq!(scene(MAP, b"P2 1 1 255 254", Unknown::Free).notes().len(), 1);
+        assert_eq!(blocked.notes()[2], "unknown cells, which are obstacles (the other way: --unknown free): 1");
+        assert_eq!(scene(MAP, b"P2 2 1 255 254 0", Unknown::Free).notes().len(), 2);
     }
 
     #[test]
-    fn modes_and_thresholds_are_those_of_the_map_server() {
-        use Cell::{Occupied, Other, Unknown};
-        let cell = |text: &str, shade: u8, alpha: Option<(f64, f64)>| {
-            parse(text).unwrap().cell(Pixel { shade: f64::from(shade) / 255.0, alpha })
-        };
-        let all = |text: &str| [0, 89, 90, 100, 101, 205, 206, 254].map(|shade| cell(text, shade, None));
-        // Above 0.65: up to 89 of 255; below 0.196: from 206 on.
-        assert_eq!(all(MAP), [Occupied, Occupied, Unknown, Unknown, Unknown, Unknown, Other, Other]);
-        let negate = MAP.replace("negate: 0", "negate: 1");
-        assert_eq!(all(&negate), [Other, Unknown, Unknown, Unknown, Unknown, Occupied, Occupied, Occupied]);
-        assert_eq!(all(&MAP.replace("negate: 0", "negate: true")), all(&negate));
-        let scale = format!("{MAP}mode: scale\n");
-        assert_eq!(all(&scale), [Occupied, Occupied, Other, Other, Other, Other, Other, Other]);
-        let raw = format!("{MAP}mode: raw\n");
-        assert_eq!(all(&raw), [Other, Other, Other, Occupied, Unknown, Unknown, Unknown, Unknown]);
-        assert_eq!(cell(&scale, 0, Some((0.5, 1.0))), Unknown);
-        assert_eq!(cell(&scale, 0, Some((1.0, 1.0))), Occupied);
-        // Alpha counts as a colour in the mode trinary: black is half as dark in grey.
-        assert_eq!([cell(MAP, 0, Some((1.0, 3.0))), cell(MAP, 0, Some((1.0, 1.0)))], [Occupied, Unknown]);
+    fn a_map_that_is_all_one_is_said_to_be() {
+        let said = |pgm: &[u8], unknown| scene(MAP, pgm, unknown).notes().last().unwrap().clone();
+        let rule = "so there are no walls; occupied is what is dark by occupied_thresh, 0.65, or more";
+        let none = said(b"P2 2 1 255 254 205", Unknown::Free);
+        assert_eq!(none, format!("none of the 2 cells counts as occupied, {rule}"));
+        assert_eq!(said(b"P2 2 1 255 0 0", Unknown::Free), format!("all 2 cells count as occupied, {rule}"));
+        let both = said(b"P2 2 1 255 0 205", Unknown::Blocked);
+        assert_eq!(both, format!("all 2 cells count as occupied or unknown, {rule}"));
+    }
+
+    #[test]
+    fn truth_is_spelled_as_in_yaml() {
+        let negate = |word: &str| parse(&MAP.replace("negate: 0", &format!("negate: {word}"))).map(|map| map.negate);
+        for (word, expected) in [("1", true), ("yes", true), ("On", true), ("Y", true), ("TRUE", true), ("0", false)] {
+            assert_eq!(negate(word).unwrap(), expected, "{word}");
+        }
+        for word in ["no", "No", "NO", "n", "off", "False"] {
+            assert!(!negate(word).unwrap(), "{word}");
+        }
+        for word in ["nO", "2", "ja", "tRUE", "-"] {
+            assert!(negate(word).is_err(), "{word}");
+        }
     }
 
     #[test]
@@ -255,7 +279,7 @@ mod tests {
             (with("0.05", "inf"), "line 2: resolution is \"inf\"; it must be a number"),
             (with("0.05", "[1]"), "line 2: resolution is \"[1]\"; it must be a number"),
             (with("[-1.0, 2.0, 0.0]", "[1, 2]"), "line 3: origin is \"[1, 2]\"; it must be three numbers, [x, y, yaw]"),
-            (with("negate: 0", "negate: 2"), "line 4: negate is \"2\"; it must be 0 or 1"),
+            (with("negate: 0", "negate: 2"), "line 4: negate is \"2\"; it must be 0 or 1, yes or no, true or false"),
             (with("0.196", "1.5"), "line 6: free_thresh is \"1.5\"; it must be a number from 0 to 1"),
             (with("map.pgm", "~"), "line 1: image is \"\"; it must be the name of a .png or .pgm file"),
             (fault(&format!("{MAP}mode: best\n")), "line 7: mode is \"best\"; it must be trinary, scale or raw"),
@@ -274,15 +298,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("map.yaml");
         std::fs::write(&path, MAP).unwrap();
-        let e = read(&path, Unknown::Free).unwrap_err().to_string();
+        let e = read(&path, Ros::Two, Unknown::Free).unwrap_err().to_string();
         assert!(e.starts_with("cannot read ") && e.contains("map.pgm: No such file"), "{e}");
         std::fs::write(folder.path().join("map.pgm"), b"P5 1000000000 1000000000 255\n").unwrap();
-        let e = read(&path, Unknown::Free).unwrap_err().to_string();
+        let e = read(&path, Ros::Two, Unknown::Free).unwrap_err().to_string();
         assert!(e.contains("map.pgm: 1000000000 x 1000000000 pixels; each side must have from 1 to 32768"), "{e}");
         // Noise has more borders than a map.
         let noise: Vec<u8> = (0..3000 * 3000).map(|i| if (i % 3000 + i / 3000) % 2 == 0 { 0 } else { 254 }).collect();
         std::fs::write(folder.path().join("map.pgm"), [b"P5 3000 3000 255\n", &noise[..]].concat()).unwrap();
-        let e = read(&path, Unknown::Free).unwrap_err().to_string();
+        let e = read(&path, Ros::Two, Unknown::Free).unwrap_err().to_string();
         assert!(e.contains("map.pgm: more than 8388608 walls"), "{e}");
     }
 }

@@ -2,6 +2,7 @@
 
 mod statements;
 
+use std::borrow::Cow;
 use std::str::FromStr;
 
 use glam::DVec2;
@@ -37,7 +38,7 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
             };
             return Err(Fault::new(Place::line(line), what));
         }
-        let geometry = Wkt::<f64>::from_str(statement.geometry)
+        let geometry = Wkt::<f64>::from_str(&with_signs(statement.geometry))
             .map_err(|e| Fault::new(place.clone(), format!("not WKT: {e}: {:?}", excerpt(statement.geometry))))?;
         found.geometry(&geometry, &place)?;
         found.geographic |= matches!(statement.srid, Some(4326 | 4258 | 4269));
@@ -49,6 +50,27 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
         return Err(Fault::new(Place::default(), what));
     }
     found.scene()
+}
+
+/// The same with a sign before each NaN and infinity, as programs write an altitude that they do not know: the parser takes
+/// them for numbers only then.
+fn with_signs(text: &str) -> Cow<'_, str> {
+    let is_end = |b: u8| b.is_ascii_whitespace() || matches!(b, b'(' | b')' | b',');
+    let mut signed = String::new();
+    let mut from = 0;
+    for (at, word) in text.split(|c: char| c.is_ascii() && is_end(c as u8)).scan(0, |next, word| {
+        let at = *next;
+        *next += word.len() + 1;
+        Some((at, word))
+    }) {
+        // Not the name of a geometry.
+        if at > 0 && ["nan", "inf", "infinity"].iter().any(|name| word.eq_ignore_ascii_case(name)) {
+            signed += &text[from..at];
+            signed.push('+');
+            from = at;
+        }
+    }
+    if from == 0 { Cow::Borrowed(text) } else { Cow::Owned(signed + &text[from..]) }
 }
 
 /// What the geometries seen so far hold.
@@ -160,6 +182,18 @@ mod tests {
     }
 
     #[test]
+    fn an_altitude_that_is_not_known_is_passed_over() {
+        for text in [
+            "LINESTRING Z (1 0 5, 1 1 NaN)",
+            "LINESTRING Z (1 0 nan,1 1 nan)",
+            "LINESTRING ZM (1 0 NaN -nan, 1 1 +NaN NAN)",
+            "LINESTRING M (1 0 inf, 1 1 -inf)",
+        ] {
+            assert_eq!(walls(text), [[1.0, 0.0, 1.0, 1.0]], "{text}");
+        }
+    }
+
+    #[test]
     fn geometries_follow_each_other_as_people_write_them() {
         let line = [0.0, 0.0, 1.0, 0.5];
         let one = "LINESTRING (0 0, 1 0.5)";
@@ -226,7 +260,12 @@ mod tests {
         for (text, part) in [
             ("WALL (0 0, 1 1)", "line 1: not WKT: Invalid type"),
             ("LINESTRING (0 0, 1)", "line 1: not WKT: "),
-            ("LINESTRING (0 0, 1 nan)", "line 1: not WKT: "),
+            ("LINESTRING (0 0, 1 nan)", "line 1, position 1: NaN is not a finite number"),
+            ("LINESTRING Z (0 0 5, NaN 1 NaN)", "line 1, position 1: NaN is not a finite number"),
+            ("LINESTRING (0 0, 1 Infinity)", "line 1, position 1: inf is not a finite number"),
+            ("LINESTRING (0 0, 1 nano)", "line 1: not WKT: "),
+            ("LINESTRING (0 0, 1 xnan)", "line 1: not WKT: "),
+            ("NaN (0 0, 1 1)", "line 1: not WKT: "),
             ("LINESTRING (0 0, 1 1) x", "line 1: not WKT: "),
             ("LINESTRING (0 0, 1 1))", "line 1: not WKT: "),
             ("LINESTRING (0 0 0, 1 1 1)", "line 1: not WKT: "),

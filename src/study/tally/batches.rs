@@ -37,8 +37,13 @@ impl Batches {
         if sizes.blocks < 2 {
             return (ratio, None);
         }
-        let (squares, products, sizes_squared) = (self.squares as f64, self.products as f64, sizes.squares as f64);
-        let rest = squares - 2.0 * ratio * products + ratio * ratio * sizes_squared;
+        // The sums of the squares of (sum - ratio * size). First with the whole part of the ratio, in whole numbers: else what is
+        // left of large numbers that are nearly alike is rounding. The products may wrap on the way; what they come to has room.
+        let whole = u128::from(self.sum.checked_div(sizes.sum).unwrap_or(0));
+        let part = (u128::from(self.sum) - whole * u128::from(sizes.sum)) as f64 / size;
+        let products = self.products.wrapping_sub(whole.wrapping_mul(sizes.squares));
+        let squares = self.squares.wrapping_sub(whole.wrapping_mul(self.products.wrapping_add(products)));
+        let rest = squares as f64 - 2.0 * part * (products as i128) as f64 + part * part * sizes.squares as f64;
         let blocks = sizes.blocks as f64;
         (ratio, Some((rest.max(0.0) * blocks / (blocks - 1.0)).sqrt() / size))
     }
@@ -83,5 +88,19 @@ mod tests {
         let error = (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / 4.0 / 5.0).sqrt();
         let (ratio, estimated) = batches.ratio(&sizes);
         assert!((ratio - mean).abs() < 1e-15 && (estimated.unwrap() - error).abs() < 1e-15);
+    }
+    /// Sums of some 2^40 that are alike but for a unit: of their squares, the difference is beyond the digits of an f64.
+    #[test]
+    fn nearly_equal_blocks_have_nearly_no_error() {
+        let of = |sums: &[(u64, u64)]| {
+            let (mut batches, mut sizes) = (Batches::default(), Sizes::default());
+            sums.iter().for_each(|&(size, sum)| (batches.add(size, sum), sizes.add(size)).1);
+            batches.ratio(&sizes)
+        };
+        let large = (1 << 40) + 12345;
+        assert_eq!(of(&[(1000, 1000 * large), (500, 500 * large), (1, large)]), (large as f64, Some(0.0)));
+        // Means of x - 1, x and x + 1: a deviation of 1, over the root of 3.
+        let (ratio, error) = of(&[(10, 10 * large - 10), (10, 10 * large), (10, 10 * large + 10)]);
+        assert!(ratio == large as f64 && (error.unwrap() - 3f64.sqrt().recip()).abs() < 1e-15, "{error:?}");
     }
 }

@@ -4,6 +4,7 @@
 //! block and put together in the order of the blocks.
 
 mod batches;
+mod block;
 mod counts;
 mod follow;
 mod lengths;
@@ -17,7 +18,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 pub(super) use batches::{Batches, Sizes};
-pub(super) use counts::{CellCounts, Counts, Touched, Traced, Wound};
+pub(super) use block::{Block, Traced};
+pub(super) use counts::{CellCounts, Counts, Touched, Wound};
 pub(super) use lengths::of_rank;
 pub(crate) use moments::Moments;
 pub(super) use setting::Setting;

@@ -1,7 +1,8 @@
 //! How common each taut rope is.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
+use rustc_hash::FxHashMap as HashMap;
 use serde::{Deserialize, Serialize};
 
 /// How many different ropes of each block are counted at the most: the most common ones.
@@ -20,10 +21,8 @@ pub(crate) struct Ropes {
 }
 
 impl Ropes {
-    /// The ropes of one block.
-    pub(super) fn of_block(ropes: impl Iterator<Item = Key>) -> Self {
-        let mut counts = HashMap::<Key, u64>::new();
-        ropes.for_each(|key| *counts.entry(key).or_default() += 1);
+    /// The ropes of one block, with how many traces ended with each.
+    pub(super) fn of_block(counts: HashMap<Key, u64>) -> Self {
         if counts.len() <= ROPES_A_BLOCK {
             return Ropes { counts: counts.into_iter().collect(), missing: 0 };
         }
@@ -54,16 +53,22 @@ impl Ropes {
 mod tests {
     use super::*;
 
+    fn of_block(ropes: impl Iterator<Item = Key>) -> Ropes {
+        let mut counts = HashMap::default();
+        ropes.for_each(|key| *counts.entry(key).or_default() += 1);
+        Ropes::of_block(counts)
+    }
+
     #[test]
     fn what_is_left_out_is_known() {
         let block = |rare: u32| {
             // One rope is common; of 400 others some are seen twice.
             let others = (0..400).flat_map(move |i| vec![vec![rare, i]; if i < 300 { 2 } else { 1 }]);
-            Ropes::of_block(others.chain(vec![vec![7]; 50]))
+            of_block(others.chain(vec![vec![7]; 50]))
         };
         let mut ropes = block(0);
         ropes.merge(block(1));
-        ropes.merge(Ropes::of_block([vec![7], vec![0, 5]].into_iter()));
+        ropes.merge(of_block([vec![7], vec![0, 5]].into_iter()));
         assert_eq!(ropes.top(1), [(&vec![7], 101, 105)]);
         assert_eq!(ropes.top(2)[1], (&vec![0, 5], 3, 7));
     }

@@ -60,6 +60,8 @@ pub(crate) struct Setting {
     /// After how many steps the map looks again.
     pub every: u64,
     pub obstacles: Obstacles,
+    /// The label of each wall end; empty if there are none.
+    pub labels: Vec<Option<String>>,
 }
 
 impl Setting {
@@ -86,6 +88,7 @@ impl Setting {
             cells: (tallies.map > 0).then(|| Cells::new((low, high), tallies.map)),
             every: u64::from(tallies.map_every.max(1)),
             obstacles: Obstacles::new(&models[0]),
+            labels: models[0].scene().labels().into_iter().map(|label| label.map(str::to_owned)).collect(),
             models,
         }
     }

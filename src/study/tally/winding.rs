@@ -13,6 +13,8 @@ pub(crate) struct Obstacle {
     /// The lowest number among its wall ends.
     pub vertex: u32,
     pub walls: u32,
+    /// The lowest number among its wall ends that have a label; `vertex` if none has.
+    pub named: u32,
     /// The point about which the ropes' turns are counted: the middle of its first wall.
     pub middle: DVec2,
 }
@@ -43,7 +45,15 @@ impl Obstacles {
             let vertex = root(&mut parents, u);
             let [a, b] = model.scene().ends(wall);
             let middle = a / 2.0 + b / 2.0;
-            of[vertex as usize].get_or_insert(Obstacle { vertex, walls: 0, middle }).walls += 1;
+            of[vertex as usize].get_or_insert(Obstacle { vertex, walls: 0, named: vertex, middle }).walls += 1;
+        }
+        // From the last to the first, so that the first one stays.
+        for (v, _) in
+            (0..).zip(model.scene().labels()).filter(|(_, label)| label.is_some()).collect::<Vec<_>>().into_iter().rev()
+        {
+            if let Some(obstacle) = &mut of[root(&mut parents, v) as usize] {
+                obstacle.named = v;
+            }
         }
         let mut obstacles: Vec<Obstacle> = of.into_iter().flatten().collect();
         obstacles.sort_by(|a, b| a.middle.x.total_cmp(&b.middle.x).then(a.vertex.cmp(&b.vertex)));

@@ -1,5 +1,7 @@
 //! Scenes of other formats, and `tautline convert`.
 
+use tautline::scene::{Scene, read_scene};
+
 use super::Folder;
 
 const PLAN: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="10mm" viewBox="0 0 20 10">
@@ -23,6 +25,39 @@ fn a_drawing_becomes_geojson_and_well_known_text() {
     folder.write("m.map", "type octile\nheight 1\nwidth 2\nmap\n.@\n");
     assert_eq!(folder.done("convert m.map m.wkt").stdout, "m.wkt: 1 walls, 2 vertices, no anchor\n");
     assert_eq!(folder.text("m.wkt"), "LINESTRING (1.0 0.0, 1.0 1.0)\n");
+}
+
+#[test]
+fn labels_layers_and_what_is_solid_are_kept() {
+    let folder = Folder::new();
+    folder.write("m.map", "type octile\nheight 4\nwidth 5\nmap\n.....\n.@@..\n.@..@\n....@\n");
+    folder.write(
+        "p.json",
+        r#"{"type":"FeatureCollection","features":[
+        {"type":"Feature","properties":{"name":"pillar 3","layer":"a"},"geometry":{"type":"MultiPolygon","coordinates":
+            [[[[0,0],[4,0],[0,4],[0,0]],[[1,1],[2,1],[1,2],[1,1]]],[[[9,9],[8,9],[9,8],[9,9]]]]}},
+        {"type":"Feature","properties":{"layer":"b"},"geometry":{"type":"LineString","coordinates":[[9,9],[20,1]]}}]}"#,
+    );
+    for (from, walls) in [("m.map", 8), ("p.json", 10)] {
+        folder.done(&format!("convert {from} a.geojson"));
+        folder.done("convert a.geojson b.geojson");
+        let [first, second, third] =
+            [from, "a.geojson", "b.geojson"].map(|name| read_scene(&folder.path(name)).unwrap());
+        assert_eq!(first.walls().len(), walls);
+        for again in [second, third] {
+            assert_eq!(again.walls(), first.walls());
+            for wall in 0..walls {
+                assert_eq!(again.outline(wall), first.outline(wall));
+                assert_eq!(again.objects()[again.object_of(wall)], first.objects()[first.object_of(wall)]);
+                for other in 0..walls {
+                    let is_one = |scene: &Scene| scene.object_of(wall) == scene.object_of(other);
+                    assert_eq!(is_one(&again), is_one(&first), "{wall} {other}");
+                }
+            }
+        }
+    }
+    let note = "note: a.wkt: well-known text has no place for labels, layers and what is solid; GeoJSON has\n";
+    assert_eq!(folder.done("convert p.json a.wkt").stderr, note);
 }
 
 #[test]
@@ -85,6 +120,11 @@ fn check_lists_what_a_reader_has_to_say() {
         ("a.dxf", "0\nSECTION\n0\nENDSEC\n0\nEOF\n", "or put a POINT on a layer called anchor"),
     ] {
         folder.write(name, text);
-        folder.refused(2, &format!("check --scene {name}"), &[&format!("{name}: no anchor; give --anchor X,Y, {how}")]);
+        let shown = folder.done(&format!("check --scene {name}")).stdout;
+        let expected = format!("no anchor\n        to tie a rope, give --anchor X,Y, {how}\n");
+        assert!(shown.contains(&expected), "{shown}");
+        folder.write("t.csv", "trace,x,y\n0,1,1\n");
+        let eval = format!("eval --scene {name} --traces t.csv");
+        folder.refused(2, &eval, &[&format!("{name}: no anchor; give --anchor X,Y, {how}")]);
     }
 }

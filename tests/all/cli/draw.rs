@@ -93,6 +93,11 @@ fn block(readme: &str, first: &str) -> String {
     lines.map(|line| format!("{}\n", line.trim())).collect()
 }
 
+/// What a block of the README is that shows this.
+fn block_of(shown: &str) -> String {
+    shown.lines().map(|line| format!("{}\n", line.trim())).collect::<String>() + "\n"
+}
+
 #[test]
 fn the_readme_leads_from_a_plan_to_a_moving_picture() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -103,7 +108,7 @@ fn the_readme_leads_from_a_plan_to_a_moving_picture() {
     let study = block(&readme, "[scene]");
     folder.write("plan.toml", study.replace("10_000", "2_000"));
     let found = folder.done("check --scene plan.svg").stdout;
-    assert!(readme.contains(found.trim_end()), "{found}");
+    assert_eq!(block(&readme, found.lines().next().unwrap()), block_of(&found), "{found}");
     folder.done("draw --scene plan.svg --traces drag.csv --out drag.html");
     assert!(folder.text("drag.html").contains("<script>"));
     folder.done("draw --scene plan.svg --traces drag.csv --out drag.svg");

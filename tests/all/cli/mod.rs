@@ -1,11 +1,14 @@
 //! The program as its users run it: arguments and files in; files, messages and exit codes out.
 
+mod adapters;
 mod batches;
 mod bench;
 mod convert;
+mod describe;
 mod draw;
 mod engines;
 mod extremes;
+mod faults;
 mod newcomer;
 mod process;
 mod queries;

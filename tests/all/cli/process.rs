@@ -149,6 +149,66 @@ mod unix {
         assert!(folder.files() == before, "there are {:?}", folder.files().keys());
     }
 
+    /// A block of these walks takes minutes to draw.
+    const SLOW: &str = "[scene]\nbuilt_in = \"rooms\"\n[walk]\nkind = \"waypoints\"\nstep = 0.001\nsteps = 1_000_000\n\
+        [run]\ntraces = 4000\nblock = 100\n";
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn ctrl_c_ends_a_study_while_walks_are_drawn() {
+        let folder = Folder::new();
+        folder.write("slow.toml", SLOW);
+        for args in ["study run slow.toml --out a", "study run slow.toml --out a", "study resume a"] {
+            let mut child = start(&folder, args);
+            wait_until_it_listens(&mut child);
+            // Once the state is there traces are drawn.
+            while !folder.path("a/state.bin").exists() {
+                assert_runs(&mut child);
+            }
+            interrupt(&child);
+            let finished = finish(child);
+            // It may have come before the study was gone on with.
+            assert!([4, 130].map(Some).contains(&finished.code), "{}", finished.stderr);
+            assert!(finished.stderr.contains("error: stopped"), "{}", finished.stderr);
+        }
+        assert!(folder.done("study show a").stdout.contains("not finished"));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn ctrl_c_ends_what_is_tried_out_for_long() {
+        let folder = Folder::new();
+        folder.write("slow.toml", SLOW);
+        let before = folder.files();
+        for args in ["tradeoff --traces 4000 --seconds 1000 --out t.svg", "study run slow.toml --dry-run"] {
+            let mut child = start(&folder, args);
+            wait_until_it_listens(&mut child);
+            interrupt(&child);
+            finish(child).has_failed(130, args, &["error: stopped; nothing was written"]);
+            assert!(folder.files() == before, "{args} left {:?}", folder.files().keys());
+        }
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_signal_that_was_ignored_before_is_ignored() {
+        let folder = Folder::new();
+        folder.write("slow.toml", SLOW);
+        let program = folder.command("");
+        let mut shell = Command::new("sh");
+        shell.current_dir(folder.path("")).args(["-c", r#"trap '' HUP; exec "$0" "$@""#]).arg(program.get_program());
+        shell.args(["study", "run", "slow.toml", "--out", "a"]).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = shell.spawn().unwrap();
+        while !folder.path("a/state.bin").exists() {
+            assert_runs(&mut child);
+        }
+        assert!(Command::new("kill").args(["-HUP", &child.id().to_string()]).status().unwrap().success());
+        std::thread::sleep(Duration::from_millis(300));
+        assert_runs(&mut child);
+        assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+        assert_eq!(finish(child).code, Some(4));
+    }
+
     #[test]
     fn ctrl_c_while_files_are_written_leaves_all_or_nothing() {
         let folder = Folder::hand_made();

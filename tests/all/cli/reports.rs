@@ -108,8 +108,10 @@ fn check_counts_what_is_there() {
     let folder = Folder::hand_made();
     folder.write("z.geojson", r#"{"type": "LineString", "coordinates": [[0, 0], [0, 0], [1, 0]]}"#);
     folder.write("v.csv", "trace,x,y\n0,0,12\n0,5,12\n3,1,0\n3,5,0\n");
-    let scene =
-        json!({"name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "anchor": [0.0, 0.0], "notes": []});
+    let scene = json!({
+        "name": "s.geojson", "walls": 2, "vertices": 4, "dropped": 0, "solid": 0, "box": [[3.0, -9.0], [6.0, 4.0]],
+        "unit": null, "y": "up", "layers": [], "labels": [], "anchor": [0.0, 0.0], "warnings": [], "notes": [],
+    });
     let mut violation = report(&folder, "check --scene s.geojson --json --traces v.csv --on-violation flag");
     let violation = violation["traces"]["violations"][0].take();
     for (key, value) in [("trace", json!(3)), ("step", json!(1)), ("kind", json!("crosses")), ("wall", json!(0))] {
@@ -141,7 +143,7 @@ fn check_refuses_what_eval_refuses() {
     folder.refused(2, "check --scene s.geojson --traces v.csv", &["v.csv: trace 3, step 1: ", "crosses wall 0"]);
     folder.refused(2, "check --scene s.wkb", &["s.wkb", ".geojson, .json, .wkt, .svg, .dxf, .map, .yaml, .yml"]);
     folder.refused(2, "check --traces t.csv", &["--traces needs --scene"]);
-    folder.refused(2, "check --scene s.geojson --anchor 3,1", &["inside wall 0"]);
+    folder.refused(2, "check --scene s.geojson --anchor nan,1", &["NaN is not a finite number"]);
 }
 
 #[test]
@@ -153,10 +155,15 @@ fn adapters_lists_the_software_adapter() {
     let shown = folder.done("adapters");
     assert_eq!(shown.stderr, "");
     let header: Vec<_> = shown.stdout.lines().next().unwrap().split_whitespace().collect();
-    assert_eq!(header, ["adapter", "type", "backend", "driver"]);
+    assert_eq!(header, ["number", "adapter", "type", "backend", "driver"]);
     let [name, backend, driver] = ["name", "backend", "driver"].map(|field| software[field].as_str().unwrap());
     assert!(!name.is_empty() && ["vulkan", "metal", "dx12"].contains(&backend) && !driver.is_empty(), "{software}");
-    let line = shown.stdout.lines().find(|l| l.starts_with(name)).unwrap();
+    let (number, line) = shown
+        .stdout
+        .lines()
+        .find_map(|line| line.trim_start().split_once("  ").filter(|l| l.1.starts_with(name)))
+        .unwrap();
+    assert_eq!(json!(number.parse::<u64>().unwrap()), software["number"]);
     assert_eq!(line[name.len()..].split_whitespace().take(2).collect::<Vec<_>>(), ["software", backend]);
     assert!(line.ends_with(driver), "{line}");
     let real = adapters.iter().any(|a| ["discrete", "integrated", "virtual"].contains(&a["type"].as_str().unwrap()));

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::DVec2;
 use tautline::geometry::check_point;
 use tautline::output::write_scene;
-use tautline::scene::{Model, Scene, SceneOptions, Unknown, read_scene, read_scene_with};
+use tautline::scene::{Model, Ros, Scene, SceneOptions, Unknown, read_scene, read_scene_with};
 use tautline::trace::{Trace, settle};
 
 use super::engines::agree;
@@ -19,7 +19,7 @@ const WRITTEN_MAX: usize = 20_000;
 /// Reads `input` as the file `name`.
 pub(super) fn read(name: &str, input: &[u8], folder: &Path) {
     fs::write(folder.join(name), input).expect("the folder can be written to");
-    let other = SceneOptions { flatten: Some(0.01), unknown: Unknown::Blocked };
+    let other = SceneOptions { flatten: Some(0.01), unknown: Unknown::Blocked, ros: Ros::One, ..Default::default() };
     for options in [SceneOptions::default(), other] {
         match read_scene_with(&folder.join(name), &options) {
             Ok(scene) => survives(&scene, folder),

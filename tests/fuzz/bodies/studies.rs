@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
+use std::sync::{LazyLock, Mutex};
 
 use tautline::engine::{Cpu, Engine, Job};
 use tautline::output::merge_results;
@@ -51,10 +51,10 @@ fn is_small(plan: &Plan) -> bool {
 fn complete(study: &Study) -> State {
     let cpu = |model| Box::new(Cpu::new(model)) as Box<dyn Engine>;
     let mut engines: Vec<_> = study.models().iter().map(|model| cpu(&**model)).collect();
-    let mut state = State::new(study, Shard::WHOLE);
-    let done = run::<Infallible>(study, &mut engines, &mut state, &Job::new(), |_, _, _| Ok(()));
+    let state = Mutex::new(State::new(study, Shard::WHOLE));
+    let done = run::<Infallible>(study, &mut engines, &state, &Job::new(), |_, _, _| Ok(()));
     done.unwrap_or_else(|e| panic!("{e}"));
-    state
+    state.into_inner().expect("nobody panicked")
 }
 
 /// Loads `input` as a state: as it is, and with a header and a check sum that fit.

@@ -1,0 +1,105 @@
+//! One writer a folder.
+
+use std::fs::{File, Metadata, TryLockError};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use anyhow::anyhow;
+use tautline::output::WriteError;
+
+use crate::cli::failure::Failure;
+
+/// The file in a study's folder on which the lock lies. It stays there: whoever removed it could not know who waits for it.
+pub(super) const LOCK: &str = "lock";
+
+/// Held by the process that writes to a study's folder. The operating system lets go of it when the process ends, in whatever way.
+pub(super) struct Lock {
+    file: File,
+    path: PathBuf,
+    /// Whether no process had it before.
+    pub(super) is_new: bool,
+}
+
+impl Lock {
+    /// Takes the lock of a folder, which is there. An error if another process has it, and still has it after a moment.
+    pub(super) fn take(folder: &Path) -> Result<Self, Failure> {
+        let path = folder.join(LOCK);
+        let is_new = !path.exists();
+        loop {
+            let open = File::options().read(true).write(true).create(true).truncate(false).open(&path);
+            let mut file = open.map_err(|cause| WriteError::Io { path: path.clone(), cause })?;
+            match patiently(|| file.try_lock()) {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Err(in_use(folder, &mut file)),
+                Err(TryLockError::Error(e)) => say!(
+                    "note: {}: the file system has no locks ({e}); see to it that nothing else writes there",
+                    folder.display()
+                ),
+            }
+            // Who had it before may have removed the folder meanwhile.
+            let mut lock = Lock { file, path: path.clone(), is_new };
+            if lock.is_in_place() {
+                // Whose it is, is only said: without room for that, the lock is as good.
+                let _ = lock.file.set_len(0).and_then(|()| writeln!(lock.file, "{}", std::process::id()));
+                return Ok(lock);
+            }
+        }
+    }
+
+    /// Takes part in the lock of a folder that is only read, so that nobody writes to it meanwhile. `None` for one that has never
+    /// been written to by a process with a lock.
+    pub(super) fn share(folder: &Path) -> Result<Option<File>, Failure> {
+        let Ok(mut file) = File::open(folder.join(LOCK)) else { return Ok(None) };
+        match patiently(|| file.try_lock_shared()) {
+            Err(TryLockError::WouldBlock) => Err(in_use(folder, &mut file)),
+            Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
+        }
+    }
+
+    /// Whether the folder is where it was: it may have been moved, and another have taken its place.
+    pub(super) fn is_in_place(&self) -> bool {
+        match (self.file.metadata(), std::fs::metadata(&self.path)) {
+            (Ok(own), Ok(there)) => is_same(&own, &there),
+            _ => false,
+        }
+    }
+}
+
+/// How long a lock is waited for: a process that was killed may take a moment to be gone.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Tries until there is a lock, for a while.
+fn patiently(lock: impl Fn() -> Result<(), TryLockError>) -> Result<(), TryLockError> {
+    let start = Instant::now();
+    loop {
+        match lock() {
+            Err(TryLockError::WouldBlock) if start.elapsed() < PATIENCE => sleep(Duration::from_millis(20)),
+            ended => return ended,
+        }
+    }
+}
+
+#[cfg(unix)]
+fn is_same(a: &Metadata, b: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+/// A folder with an open file in it can be neither moved nor removed.
+#[cfg(not(unix))]
+fn is_same(_: &Metadata, _: &Metadata) -> bool {
+    true
+}
+
+fn in_use(folder: &Path, file: &mut File) -> Failure {
+    let mut text = String::new();
+    let read = file.take(20).read_to_string(&mut text);
+    let who = match read.ok().and_then(|_| text.trim().parse::<u32>().ok()) {
+        Some(process) => format!("process {process}"),
+        None => "another run".to_owned(),
+    };
+    let shown = folder.display();
+    Failure::input(anyhow!("{shown} is in use: {who} writes to it; wait for its end, or stop it"))
+}
