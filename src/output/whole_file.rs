@@ -119,6 +119,8 @@ impl Write for WholeFile {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use std::fs;
 

@@ -286,6 +286,8 @@ fn counted(mut plan: Plan, folder: &Path) -> Result<Plan, PlanError> {
     let count = match (&plan.walk, plan.run.traces) {
         (WalkPlan::Given { file }, None) => {
             let path = folder.join(file);
+            // It is read again for its traces, so it can be no pipe.
+            open(&path, false).map_err(|e| PlanError::new(e.to_string()))?;
             let mut reader = TraceReader::open(&path).map_err(|e| PlanError::new(e.to_string()))?;
             match skip(&mut reader, u64::MAX)? {
                 0 => return Err(PlanError::new("there are no traces in it").at(&path)),
