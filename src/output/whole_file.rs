@@ -122,7 +122,6 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use std::fs;
 
     fn names(folder: &Path) -> Vec<String> {
         let mut names: Vec<_> =
