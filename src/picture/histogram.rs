@@ -80,7 +80,7 @@ pub fn histogram(summary: &Summary, name: &str) -> String {
         svg.line([x, top], [x, ground], &style);
         known.push((style, format!("median {}", number(median.value.value, None))));
     }
-    chart.axes(&mut svg, (&what, "scene units"), ("share of traces", "%"));
+    chart.axes(&mut svg, (what, "scene units"), ("share of traces", "%"));
     legend(&mut svg, [left, 18.0], &known);
     let note = format!("error bars: {} % intervals", number(100.0 * summary.study.tallies.confidence, None));
     if bins.iter().any(|b| b.share.low.is_some()) {

@@ -138,7 +138,7 @@ fn inflates_beyond(bytes: &[u8], size: u64) -> bool {
     let mut inflate = flate2::Decompress::new(true);
     let mut out = vec![0; 1 << 16];
     let mut rest = bytes.get(8..).unwrap_or_default();
-    while let Some((&length, tail)) = rest.split_first_chunk::<4>().map(|(length, tail)| (length, tail)) {
+    while let Some((&length, tail)) = rest.split_first_chunk::<4>() {
         let length = u32::from_be_bytes(length) as usize;
         let Some(chunk) = tail.get(4..4 + length) else { return false };
         if tail.starts_with(b"IDAT") {

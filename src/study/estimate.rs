@@ -58,6 +58,7 @@ impl Confidence {
 }
 
 #[cfg(test)]
+#[allow(clippy::excessive_precision)] // digits as they were computed
 mod tests {
     use super::*;
 

@@ -149,6 +149,7 @@ fn asymptotic(n: f64, along: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::excessive_precision)] // digits as they were computed
 mod tests {
     use super::*;
 

@@ -52,7 +52,7 @@ fn wrong_type(name: &str, kind: &DataType, whole: bool) -> String {
             (format!("{kind}, as DuckDB writes HUGEINT"), format!("a whole number of 64 bits, CAST({name} AS BIGINT)"))
         }
         DataType::FixedSizeBinary(16) => {
-            (format!("{kind}, as Polars writes Int128"), format!("a whole number of 64 bits, cast(pl.Int64)"))
+            (format!("{kind}, as Polars writes Int128"), "a whole number of 64 bits, cast(pl.Int64)".to_owned())
         }
         DataType::Float16 | DataType::Float32 => (kind.to_string(), format!("a whole number, CAST({name} AS {cast})")),
         DataType::Decimal32(..) | DataType::Decimal64(..) | DataType::Decimal128(..) | DataType::Decimal256(..) => {

@@ -76,14 +76,14 @@ pub(super) fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&S
     // have come since the last such corner.
     let mut broken = vec![false; slides + 1];
     let mut open = BOTH.map(|side| enter(side) < SLIPS);
-    for i in 0..=slides {
+    for (i, broken) in broken.iter_mut().enumerate() {
         if i > 0 {
             let comes =
                 |cost: &dyn Fn(Turn) -> u64| BOTH.into_iter().zip(open).any(|(last, is)| is && cost(last) < SLIPS);
             open = if i < slides { BOTH.map(|next| comes(&|last| turn(i, last, next))) } else { [comes(&leave); 2] };
         }
         if open == [false; 2] {
-            (broken[i], open) = (true, [true; 2]);
+            (*broken, open) = (true, [true; 2]);
         }
     }
     let forgiven = |i: usize, cost: u64| if broken[i] && cost >= SLIPS { cost - SLIPS } else { cost };

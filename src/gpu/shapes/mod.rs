@@ -153,6 +153,7 @@ impl Add for Ways {
 
 impl Sub for Ways {
     type Output = Ways;
+    #[allow(clippy::suspicious_arithmetic_impl)] // a difference is the sum with the negative
     fn sub(self, other: Ways) -> Ways {
         let values = other.values.map(|x| -x);
         let product = other.product.map(|[x, y]| [-x, y]);

@@ -177,7 +177,7 @@ fn no_permission_has_one_exit_code() {
         fs::set_permissions(folder.path(name), fs::Permissions::from_mode(mode)).unwrap();
     }
     for name in ["locked/secret.csv", "locked/secret.geojson", "locked/secret.toml"] {
-        fs::set_permissions(folder.path(name), fs::Permissions::from_mode(0)).unwrap();
+        fs::set_permissions(folder.path(name), fs::Permissions::from_mode(0o0)).unwrap();
     }
     // Permissions do not bind the root user.
     let is_root = fs::metadata(folder.path("")).unwrap().uid() == 0;

@@ -51,7 +51,7 @@ fn each_query_has_its_rope() {
 #[test]
 fn lengths_that_are_not_the_files_are_told() {
     let folder = folder();
-    folder.write("m.map.scen", &QUERIES.replace("4.0", "3.5"));
+    folder.write("m.map.scen", QUERIES.replace("4.0", "3.5"));
     let table = stdout(&folder, "eval --scene m.map --queries m.map.scen");
     assert!(table.contains("1 of the file's lengths are not those of shortest ways"), "{table}");
 }
@@ -96,7 +96,7 @@ fn traces_along_blocked_cells_go_round_them() {
             ("2,1", "0,1,1\n0,1,2\n0,3,2\n", 4.0),
             ("3,2", "0,4,2\n0,4,1\n0,2,1\n", 4.0),
         ] {
-            folder.write("t.csv", &format!("trace,x,y\n{trace}"));
+            folder.write("t.csv", format!("trace,x,y\n{trace}"));
             stdout(&folder, &format!("eval --scene {scene} --anchor {anchor} --traces t.csv --out r.csv"));
             let row = text(&folder, "r.csv");
             let row = row.lines().nth(1).unwrap();
