@@ -21,7 +21,7 @@ fn what_comes_from_files_is_never_obeyed() {
     folder.write("a.geojson", json(r#"{"type":"ESCCSIBIDIred","coordinates":[]}"#));
     folder.write("b.geojson", raw(r#"{"type":"CSIBIDIred","coordinates":[]}"#));
     folder.write("c.dxf", raw(&dxf("TEESCXT", "0")));
-    folder.write("d.dxf", raw(&dxf("LINE", "ESCanchor")) + &raw("CSI"));
+    folder.write("d.dxf", raw(&dxf("LINE", "0").replace("10\n0", "10\nESCCSI")));
     folder.write("e.wkt", raw("LINESTRING (0 0, ESC1 1)"));
     folder.write("f.svg", raw("<svg xmlns=\"http://www.w3.org/2000/svg\"><rect id=\"CSIBIDI\" width=\"CSI\"/></svg>"));
     folder.write("g.map", raw("type ESCoctile"));
