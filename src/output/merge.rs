@@ -18,9 +18,8 @@ use crate::caught::caught;
 const ROWS: usize = 1 << 13;
 
 /// Writes the rows of the Parquet files at `from`, each as [`ResultWriter`](super::ResultWriter) writes it and in the order of
-/// its traces, to one such file at `to`, in the order of all traces; `notes` go into its metadata. The same rows give the same bytes, however
-/// they are shared out. O(rows) in time for few
-/// files; in memory a few thousand rows of those whose traces overlap.
+/// its traces, to one such file at `to`, in the order of all traces; `notes` go into its metadata. The same rows give the same
+/// bytes, however they are shared out. O(rows) in time for few files; in memory a few thousand rows of those whose traces overlap.
 ///
 /// # Errors
 ///

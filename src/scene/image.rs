@@ -91,8 +91,8 @@ fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
     let (colours, depth) = reader.output_color_type();
     let samples = colours.samples();
     // What is expanded has whole bytes.
-    let size = if depth == png::BitDepth::Sixteen { 2 } else { 1 };
-    let pixels = |row: &[u8]| row.chunks_exact(samples * size).map(|p| pixel(p, size)).collect::<Vec<_>>();
+    let wide = if depth == png::BitDepth::Sixteen { 2 } else { 1 };
+    let pixels = |row: &[u8]| row.chunks_exact(samples * wide).map(|p| pixel(p, wide)).collect::<Vec<_>>();
     let (width, height) = (bits.width, bits.height);
     if interlaced {
         if width * height > INTERLACED_MAX {
@@ -100,7 +100,7 @@ fn png(bytes: &[u8], mut set: impl FnMut(Pixel) -> bool) -> Result<Bits, Fault> 
                 "interlaced, with more than {INTERLACED_MAX} pixels; save it without interlacing"
             )));
         }
-        let mut all = vec![0; width * height * samples * size];
+        let mut all = vec![0; width * height * samples * wide];
         reader.next_frame(&mut all).map_err(wrong)?;
         fill(&mut bits, 0, pixels(&all).into_iter(), &mut set);
     } else {

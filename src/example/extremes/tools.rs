@@ -59,13 +59,13 @@ pub(super) fn case(
 /// the next stop, given where the free end stands.
 pub(super) fn way(model: &Model, stops: usize, mut next: impl FnMut(DVec2) -> DVec2) -> Vec<DVec2> {
     let mut points = vec![model.anchor()];
-    // On which side the free end passes what it touches is open until it stands clear of all walls' ends.
+    // On which side the free end passes what it touches is open until it stands clear of all walls.
     let mut clear = 0;
     for _ in 0..stops {
         let to = next(points[points.len() - 1]);
         let open = points[clear..].iter().copied().chain([to]).collect();
         if first_violation(model, Trace { id: 0, points: open }).is_none() {
-            if model.vertex_at(to).is_none() {
+            if !model.is_on_wall(to) {
                 clear = points.len();
             }
             points.push(to);

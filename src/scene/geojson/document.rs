@@ -2,9 +2,9 @@
 
 use geojson::{Feature, GeoJson, JsonValue};
 
-use super::super::excerpt;
 use crate::number::{self, VANISHES};
 use crate::read_error::{Fault, Place};
+use crate::scene::excerpt;
 
 /// The document. A LinearRing, which some programs write, becomes the LineString that it is.
 ///

@@ -174,7 +174,7 @@ fn bad_usage_is_told_with_what_would_do() {
     folder.refused(2, "bench --scene lattice-0", &["lattice-0: \"0\" is no number of walls", "such as lattice-500"]);
     folder.refused(2, "bench --scene no.geojson", &["no.geojson"]);
     folder.refused(2, "bench --scene t.csv", &["t.csv", ".geojson", ".map"]);
-    folder.refused(2, "bench --scene s.geojson --anchor 3,1", &["(3, 1) lies inside wall 0"]);
+    folder.refused(2, "bench --scene s.geojson --anchor nan,1", &["NaN is not a finite number"]);
     folder.refused(2, "bench --scene s.geojson --anchor 3", &["--anchor", "such as 1.5,-2"]);
     folder.refused(2, "bench --scene rooms --anchor 1,1", &["--anchor goes with a scene file"]);
     folder.refused(2, "bench --scene rooms --sweep n", &["rooms", "a sweep over n goes through scenes random-M"]);
