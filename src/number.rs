@@ -86,7 +86,12 @@ fn numeral(bytes: &[u8]) -> usize {
 
 /// The first word in `text` that begins as numbers do and is none, or vanishes.
 pub(crate) fn wrong(text: &str) -> Option<(Range<usize>, NumberFault)> {
-    tokens(text).find_map(|at| parse(&text[at.clone()]).err().map(|fault| (at, fault)))
+    // NaN and infinities may have a sign.
+    let named = |at: &Range<usize>| {
+        let next = text.as_bytes().get(at.end);
+        matches!(&text[at.clone()], "+" | "-") && next.is_some_and(u8::is_ascii_alphabetic)
+    };
+    tokens(text).filter(|at| !named(at)).find_map(|at| parse(&text[at.clone()]).err().map(|fault| (at, fault)))
 }
 
 /// The words in `text` that begin with a digit, a sign or a point, and go on with such and exponents.
@@ -139,6 +144,8 @@ mod tests {
         assert_eq!(wrong("LINESTRING(1 2, ++1 0)"), Some((16..19, NumberFault::NoNumber)));
         assert_eq!(wrong("POLYGON Z ((1 2 nan, 1e-400 0))"), Some((21..27, NumberFault::Vanishes)));
         assert_eq!(wrong("LINESTRING(1 -2.5e+3,.5 +7)"), None);
+        assert_eq!(wrong("POINT ZM (1 2 -nan +Inf)"), None);
+        assert_eq!(wrong("POINT (1 - 2)"), Some((9..10, NumberFault::NoNumber)));
     }
 
     proptest! {

@@ -14,7 +14,7 @@ use super::batches::Batches;
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::look::{Look, Target, save};
-use super::summary::{counted, dropped};
+use super::summary::{counted, dropped, place};
 use super::trade::Terms;
 use super::{print, print_json};
 
@@ -125,7 +125,7 @@ impl<'a> Described<'a> {
     }
 
     fn table(&self, input: &InputArgs, scene: &Scene, model: Option<&Model>) -> String {
-        let anchor = model.map_or("no anchor".to_owned(), |m| format!("anchor ({}, {})", m.anchor().x, m.anchor().y));
+        let anchor = model.map_or("no anchor".to_owned(), |m| format!("anchor {}", place(m.anchor())));
         let mut text = format!(
             "scene   {}: {}, {}, {anchor}\n",
             input.name(),
@@ -139,7 +139,7 @@ impl<'a> Described<'a> {
             text += &format!("        {}\n", dropped(scene.dropped()));
         }
         if let Some((low, high)) = scene.bounds() {
-            text += &format!("box     ({}, {}) to ({}, {})", low.x, low.y, high.x, high.y);
+            text += &format!("box     {} to {}", place(low), place(high));
             text += &format!("; y points {}\n", if scene.y_down() { "down" } else { "up" });
         }
         text += &format!("unit    {}\n", self.unit.unwrap_or("the file's own"));
