@@ -208,7 +208,9 @@ impl Mul for Exact {
 mod tests {
     use glam::Vec2;
 
+    use super::source::shapes;
     use super::*;
+    use crate::gpu::{DECIDE_WGSL, PROBE_WGSL, SWEEP_WGSL};
 
     /// A sample in which everything is nothing but these.
     fn sample(normal: f32, p: f32, offset: f32) -> Sample {
@@ -250,5 +252,41 @@ mod tests {
         let found: Vec<f32> = (a * b - c * d).values().collect();
         let [a, b, c, d] = [1.1f32, 1.3, 1.7, 1.9];
         assert_eq!(found, [a * b - c * d, a.mul_add(b, -(c * d)), (-c).mul_add(d, a * b)]);
+    }
+    #[test]
+    fn the_probe_asks_for_every_shape_of_the_shaders() {
+        let asked = shapes(PROBE_WGSL);
+        for (name, wgsl) in [("sweep.wgsl", SWEEP_WGSL), ("decide.wgsl", DECIDE_WGSL)] {
+            let missing: Vec<_> = shapes(wgsl).difference(&asked).cloned().collect();
+            assert!(missing.is_empty(), "probe.wgsl does not ask for these shapes of {name}: {missing:#?}");
+        }
+        // What is said of shapes goes by these names.
+        for shape in SHAPES {
+            assert!(asked.contains(shape), "probe.wgsl has no {shape}: {asked:#?}");
+        }
+    }
+
+    /// Shaders with one sum or product more are found out, also where it only comes about when functions are put in place, or by
+    /// what is kept in a variable.
+    #[test]
+    fn a_new_shape_in_a_shader_is_missed() {
+        let asked = shapes(PROBE_WGSL);
+        for (wgsl, right, wrong, shape) in [
+            (SWEEP_WGSL, "p.y + query.far.z;", "p.y + query.far.z - p.x;", "((((a*b)+(c*d))+e)-b)"),
+            (
+                SWEEP_WGSL,
+                "min(min(right, left), far)",
+                "min(min(right + left, left), far)",
+                "((((a*b)+(c*d))+e)+(((f*b)+(g*d))+h))",
+            ),
+            (DECIDE_WGSL, "return u.x * v.y - u.y * v.x;", "return u.x * v.y - u.y * v.x + 1.0;", "(((a*b)-(c*d))+e)"),
+            (DECIDE_WGSL, "dot_of(p, q - p)", "dot_of(p, q + p)", "(((a-b)*((c-b)+(a-b)))+((d-e)*((f-e)+(d-e))))"),
+            (DECIDE_WGSL, "kept[count] = p;", "kept[count] = p * 0.5;", "((((a-b)*c)*d)-(((e-f)*c)*g))"),
+        ] {
+            assert_eq!(wgsl.matches(right).count(), 1, "{right:?}");
+            let found = shapes(&wgsl.replace(right, wrong));
+            assert!(found.contains(shape), "{wrong}: {found:#?}");
+            assert!(!asked.contains(shape), "{shape}");
+        }
     }
 }
