@@ -4,7 +4,7 @@ use tautline::scene::{Scene, read_scene};
 
 use super::Folder;
 
-const PLAN: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="10mm" viewBox="0 0 20 10" fill="none" stroke="black">
+const PLAN: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="10mm" viewBox="0 0 20 10" fill="none" stroke="black" stroke-width="0.1">
 <rect width="20" height="10"/><circle cx="10" cy="5" r="2"/><circle id="anchor" cx="2" cy="0.1" r="1"/></svg>"#;
 
 #[test]
