@@ -2,7 +2,7 @@
 //!
 //! A query asks for a way between two cells of a [`GridMap`]. Here its rope is tied in the middle of the start's cell, and
 //! its free end is dragged to the middle of the goal's: straight where no wall is touched, else along a shortest way from
-//! cell to cell ([`drive`]). The file's own length of that way is there to compare with.
+//! cell to cell ([`Driver`]). The file's own length of that way is there to compare with.
 //!
 //! The format: Sturtevant, "Benchmarks for grid-based pathfinding", IEEE Trans. Comput. Intell. AI Games 4, 2012.
 
