@@ -110,8 +110,8 @@ fn write_all(
     records: &Receiver<Vec<TraceRecord>>,
 ) -> Result<Written, Failure> {
     let mut took = Duration::ZERO;
-    let mut out = out.map(|path| ResultWriter::create_labelled(path, model.scene())).transpose()?;
-    let mut events = events.map(|path| EventWriter::create_labelled(path, model.scene())).transpose()?;
+    let mut out = out.map(|path| ResultWriter::create(path, model.scene())).transpose()?;
+    let mut events = events.map(|path| EventWriter::create(path, model.scene())).transpose()?;
     for (key, value) in notes {
         out.iter_mut().for_each(|out| out.note(key, value));
         events.iter_mut().for_each(|events| events.note(key, value));

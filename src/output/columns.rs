@@ -36,6 +36,11 @@ fn push_point(builder: &mut StructBuilder, point: Option<DVec2>) {
     builder.append(point.is_some());
 }
 
+/// A list of labels; a wall end may have none.
+fn label_element() -> Field {
+    Field::new("element", DataType::Utf8, true)
+}
+
 /// One row a trace.
 pub(super) struct ResultColumns {
     trace: UInt64Builder,
@@ -53,8 +58,10 @@ pub(super) struct ResultColumns {
     labels: Option<ListBuilder<StringBuilder>>,
 }
 
-impl Default for ResultColumns {
-    fn default() -> Self {
+impl ResultColumns {
+    /// With room for labels, if there are some.
+    pub(super) fn new(labels: &Labels) -> Self {
+        let list = || ListBuilder::new(StringBuilder::new()).with_field(label_element());
         ResultColumns {
             trace: UInt64Builder::new(),
             status: StringBuilder::new(),
@@ -67,21 +74,8 @@ impl Default for ResultColumns {
             wraps: ListBuilder::new(point_builder()).with_field(element(DataType::Struct(point_fields()))),
             sides: ListBuilder::new(StringBuilder::new()).with_field(element(DataType::Utf8)),
             pull: point_builder(),
-            labels: None,
+            labels: (!labels.is_empty()).then(list),
         }
-    }
-}
-
-/// A list of labels; a wall end may have none.
-fn label_element() -> Field {
-    Field::new("element", DataType::Utf8, true)
-}
-
-impl ResultColumns {
-    /// With room for labels, if there are some.
-    pub(super) fn labelled(labels: &Labels) -> Self {
-        let list = || ListBuilder::new(StringBuilder::new()).with_field(label_element());
-        ResultColumns { labels: (!labels.is_empty()).then(list), ..ResultColumns::default() }
     }
 
     /// Adds a row; sides are those that a picture shows.
@@ -167,7 +161,7 @@ pub(super) struct EventColumns {
 
 impl EventColumns {
     /// With room for labels, if there are some.
-    pub(super) fn labelled(labels: &Labels) -> Self {
+    pub(super) fn new(labels: &Labels) -> Self {
         EventColumns { label: (!labels.is_empty()).then(StringBuilder::new), ..EventColumns::default() }
     }
 

@@ -22,28 +22,18 @@ pub struct EventWriter {
 }
 
 impl EventWriter {
-    /// Starts the file at `path`, in the format that its extension names.
+    /// Starts the file at `path`, in the format that its extension names, for ropes in `scene`. O(walls).
     ///
     /// # Errors
     ///
     /// Those of [`check_output`](super::check_output).
-    pub fn create(path: &Path) -> Result<Self, WriteError> {
-        let rows = Rows::create(path, text::EVENT_HEADER, EventColumns::default())?;
-        Ok(EventWriter { rows, labels: Labels::default() })
-    }
-
-    /// The same with the labels of the wall ends of `scene`, the one as ropes see it, if it has some. O(walls).
-    ///
-    /// # Errors
-    ///
-    /// As [`create`](Self::create).
-    pub fn create_labelled(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
+    pub fn create(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
         let labels = Labels::of(scene);
         let header = match labels.is_empty() {
             true => text::EVENT_HEADER.to_owned(),
             false => format!("{},label", text::EVENT_HEADER),
         };
-        Ok(EventWriter { rows: Rows::create(path, &header, EventColumns::labelled(&labels))?, labels })
+        Ok(EventWriter { rows: Rows::create(path, &header, EventColumns::new(&labels))?, labels })
     }
 
     /// Adds the events of one trace in that scene.
@@ -126,7 +116,7 @@ fn row<'e>(scene: &Scene, labels: &'e Labels, trace: u64, event: &'e Event) -> R
 ///
 /// If an event names a vertex that is not there.
 pub fn write_events(path: &Path, scene: &Scene, records: &[TraceRecord]) -> Result<(), WriteError> {
-    let mut writer = EventWriter::create(path)?;
+    let mut writer = EventWriter::create(path, scene)?;
     records.chunks(CHUNK).try_for_each(|records| writer.write_all(scene, records))?;
     writer.finish()
 }
@@ -199,7 +189,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let written = |name: &str| {
             let path = folder.path().join(name);
-            let mut writer = EventWriter::create_labelled(&path, &scene).unwrap();
+            let mut writer = EventWriter::create(&path, &scene).unwrap();
             writer.write(&scene, &record).unwrap();
             writer.finish().unwrap();
             std::fs::read_to_string(path).unwrap_or_default()

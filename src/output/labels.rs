@@ -8,7 +8,6 @@ use glam::DVec2;
 use crate::scene::Scene;
 
 /// The labels of a scene's wall ends, by their numbers and by their places. Without any, rows have no room for labels.
-#[derive(Default)]
 pub(super) struct Labels {
     labels: Vec<Option<String>>,
     places: HashMap<[u64; 2], u32>,

@@ -10,23 +10,32 @@ use arrow_select::coalesce::BatchCoalescer;
 use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
 
 use super::columns::ResultColumns;
+use super::labels::Labels;
 use super::tables::Table;
 use super::{WholeFile, WriteError};
 use crate::caught::caught;
+use crate::scene::Scene;
 
 /// How many rows of each file are held, and written, at a time.
 const ROWS: usize = 1 << 13;
 
 /// Writes the rows of the Parquet files at `from`, each as [`ResultWriter`](super::ResultWriter) writes it and in the order of
-/// its traces, to one such file at `to`, in the order of all traces; `notes` go into its metadata. The same rows give the same
+/// its traces, to one such file at `to`, in the order of all traces, all in `scene`; `notes` go into its metadata. The same rows give the same
 /// bytes, however they are shared out. O(rows) in time for few files; in memory a few thousand rows of those whose traces overlap.
 ///
 /// # Errors
 ///
 /// A file that cannot be read or whose columns are others, a trace that is there twice, more or fewer `rows`, and those of
 /// [`check_output`](super::check_output).
-pub fn merge_results(from: &[PathBuf], to: &Path, notes: &[(&str, String)], rows: u64) -> Result<(), WriteError> {
-    let mut table = Table::new(to, WholeFile::create(to)?, ResultColumns::default())?;
+pub fn merge_results(
+    from: &[PathBuf],
+    to: &Path,
+    scene: &Scene,
+    notes: &[(&str, String)],
+    rows: u64,
+) -> Result<(), WriteError> {
+    let columns = ResultColumns::new(&Labels::of(scene));
+    let mut table = Table::new(to, WholeFile::create(to)?, columns)?;
     notes.iter().for_each(|(key, value)| table.note(key, value));
     // Files are opened when it is their turn, so that there may be more of them than can be open at a time.
     let mut waiting = Vec::new();
@@ -139,7 +148,6 @@ mod tests {
     use super::*;
     use crate::output::{ResultWriter, write_results};
     use crate::rope::{Side, Status, TraceRecord};
-    use crate::scene::Scene;
 
     fn nothing() -> Scene {
         Scene::new([]).unwrap()
@@ -185,13 +193,15 @@ mod tests {
             (0..3).map(|k| written(&at(&format!("{k}.parquet")), (0..40_000).filter(block(k)))).collect();
         let none = written(&at("none.parquet"), 0..0);
         let all = [&parts[2], &none, &parts[0], &parts[1]].map(Clone::clone);
-        merge_results(&all, &at("merged.parquet"), &[("a", "b".to_owned())], 40_000).unwrap();
-        let short = merge_results(&all, &at("no.parquet"), &[], 40_001).unwrap_err().to_string();
+        merge_results(&all, &at("merged.parquet"), &nothing(), &[("a", "b".to_owned())], 40_000).unwrap();
+        let short = merge_results(&all, &at("no.parquet"), &nothing(), &[], 40_001).unwrap_err().to_string();
         assert!(short.ends_with("its parts have 40000 rows instead of 40001"), "{short}");
         assert!(rows(&at("merged.parquet")) == rows(&whole));
-        merge_results(std::slice::from_ref(&whole), &at("again.parquet"), &[("a", "b".to_owned())], 40_000).unwrap();
+        merge_results(std::slice::from_ref(&whole), &at("again.parquet"), &nothing(), &[("a", "b".to_owned())], 40_000)
+            .unwrap();
         assert!(std::fs::read(at("merged.parquet")).unwrap() == std::fs::read(at("again.parquet")).unwrap());
-        let twice = merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &[], 0).unwrap_err().to_string();
+        let twice =
+            merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &nothing(), &[], 0).unwrap_err().to_string();
         assert!(twice.ends_with("trace 500 is in another file too"), "{twice}");
         assert!(!at("no.parquet").exists());
     }
@@ -200,11 +210,13 @@ mod tests {
     fn what_cannot_be_read_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
-        let fails = |path: &Path| merge_results(&[path.to_owned()], &at("no.parquet"), &[], 1).unwrap_err().to_string();
+        let fails = |path: &Path| {
+            merge_results(&[path.to_owned()], &at("no.parquet"), &nothing(), &[], 1).unwrap_err().to_string()
+        };
         assert!(fails(&at("gone.parquet")).contains("gone.parquet: No such file"));
         std::fs::write(at("text.parquet"), "no table at all").unwrap();
         assert!(fails(&at("text.parquet")).starts_with(&format!("cannot read {}", at("text.parquet").display())));
-        let mut writer = ResultWriter::create(&at("turned.parquet")).unwrap();
+        let mut writer = ResultWriter::create(&at("turned.parquet"), &nothing()).unwrap();
         writer.write_all(&nothing(), &[2, 1].map(record)).unwrap();
         writer.finish().unwrap();
         assert!(fails(&at("turned.parquet")).ends_with("its rows are not in the order of their traces"));
@@ -224,7 +236,8 @@ mod tests {
                 bad[i] ^= change;
                 std::fs::write(&from, bad).unwrap();
                 // One row more than there are: what is taken is not written out.
-                let error = merge_results(std::slice::from_ref(&from), &to, &[], 10).unwrap_err().to_string();
+                let error =
+                    merge_results(std::slice::from_ref(&from), &to, &nothing(), &[], 10).unwrap_err().to_string();
                 errors += usize::from(error.contains("from.parquet"));
             }
         }

@@ -29,28 +29,18 @@ pub struct ResultWriter {
 }
 
 impl ResultWriter {
-    /// Starts the file at `path`, in the format that its extension names.
+    /// Starts the file at `path`, in the format that its extension names, for ropes in `scene`. O(walls).
     ///
     /// # Errors
     ///
     /// Those of [`check_output`](super::check_output).
-    pub fn create(path: &Path) -> Result<Self, WriteError> {
-        let rows = Rows::create(path, text::RESULT_HEADER, ResultColumns::default())?;
-        Ok(ResultWriter { rows, labels: Labels::default() })
-    }
-
-    /// The same with the labels of the wall ends of `scene`, the one as ropes see it, if it has some. O(walls).
-    ///
-    /// # Errors
-    ///
-    /// As [`create`](Self::create).
-    pub fn create_labelled(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
+    pub fn create(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
         let labels = Labels::of(scene);
         let header = match labels.is_empty() {
             true => text::RESULT_HEADER.to_owned(),
             false => format!("{},labels", text::RESULT_HEADER),
         };
-        Ok(ResultWriter { rows: Rows::create(path, &header, ResultColumns::labelled(&labels))?, labels })
+        Ok(ResultWriter { rows: Rows::create(path, &header, ResultColumns::new(&labels))?, labels })
     }
 
     /// Adds one result in that scene.
@@ -112,7 +102,7 @@ impl ResultWriter {
 ///
 /// Those of [`check_output`](super::check_output), and what the operating system says.
 pub fn write_results(path: &Path, scene: &Scene, records: &[TraceRecord]) -> Result<(), WriteError> {
-    let mut writer = ResultWriter::create(path)?;
+    let mut writer = ResultWriter::create(path, scene)?;
     records.chunks(CHUNK).try_for_each(|records| writer.write_all(scene, records))?;
     writer.finish()
 }
@@ -187,10 +177,10 @@ mod tests {
 
     #[test]
     fn a_writer_that_is_not_finished_leaves_nothing() {
-        let folder = tempfile::tempdir().unwrap();
+        let (folder, scene) = (tempfile::tempdir().unwrap(), Scene::new([]).unwrap());
         for name in ["r.csv", "r.jsonl", "r.parquet"] {
-            let mut writer = ResultWriter::create(&folder.path().join(name)).unwrap();
-            writer.write(&Scene::new([]).unwrap(), &records()[0]).unwrap();
+            let mut writer = ResultWriter::create(&folder.path().join(name), &scene).unwrap();
+            writer.write(&scene, &records()[0]).unwrap();
             drop(writer);
             assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         }
@@ -205,7 +195,7 @@ mod tests {
         let scene = Scene::of(objects, [wall([1.0, 2.0], 0), wall([3.5, -1.25], 1)]).unwrap();
         let written = |name: &str| {
             let path = folder.path().join(name);
-            let mut writer = ResultWriter::create_labelled(&path, &scene).unwrap();
+            let mut writer = ResultWriter::create(&path, &scene).unwrap();
             writer.write_all(&scene, &records()).unwrap();
             writer.finish().unwrap();
             std::fs::read(path).unwrap()
@@ -226,15 +216,5 @@ mod tests {
         let labels = batch.column_by_name("labels").unwrap().as_list::<i32>().value(0);
         let labels: Vec<_> = labels.as_string::<i32>().iter().map(|label| label.map(str::to_owned)).collect();
         assert_eq!(labels, [Some("a \"b\", c".to_owned()), None]);
-        // Without names there is no room for them.
-        let bare = Scene::new([[[1.0, 2.0].into(), [3.5, -1.25].into()]]).unwrap();
-        for name in ["b.jsonl", "b.csv", "b.parquet"] {
-            let path = folder.path().join(name);
-            let mut writer = ResultWriter::create_labelled(&path, &bare).unwrap();
-            writer.write_all(&bare, &records()).unwrap();
-            writer.finish().unwrap();
-            write_results(&folder.path().join(format!("c{name}")), &bare, &records()).unwrap();
-            assert!(std::fs::read(path).unwrap() == std::fs::read(folder.path().join(format!("c{name}"))).unwrap());
-        }
     }
 }

@@ -114,6 +114,7 @@ mod tests {
 
     use super::*;
     use crate::output::columns::{EventColumns, ResultColumns};
+    use crate::output::labels::Labels;
     use crate::output::text::Row;
     use crate::output::{write_events, write_results};
     use crate::rope::{Event, EventKind, Side, Status, TraceRecord};
@@ -251,7 +252,7 @@ mod tests {
         let onto_full = || WholeFile::onto(&path, File::options().write(true).open("/dev/full").unwrap());
         let expected = format!("cannot write {}: No space left on device (os error 28)", path.display());
 
-        let few = Table::new(&path, onto_full(), ResultColumns::default()).unwrap();
+        let few = Table::new(&path, onto_full(), ResultColumns::new(&Labels::of(&Scene::new([]).unwrap()))).unwrap();
         assert_eq!(few.complete().unwrap_err().to_string(), expected);
 
         let mut many = Table::new(&path, onto_full(), EventColumns::default()).unwrap();

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::{Scene, Sectors, WallIndex};
+use super::{Scene, Sectors, WallIndex, sectors};
 use crate::geometry::{CoordinateFault, between, check_point, forwards, higher, lower, orient, same_side};
 
 /// Why a rope cannot be tied where the anchor is.
@@ -120,11 +120,12 @@ impl Model {
 
     /// The first wall that ends at `p` or on which it stands.
     pub(crate) fn wall_at(&self, p: DVec2) -> Option<u32> {
-        let is_on = |&wall: &u32| {
-            let [u, v] = self.scene().ends(wall as usize);
-            p == u || p == v || orient(u, v, p) == 0.0 && between(u, v, p)
-        };
-        self.index().near(p, p).filter(is_on).min()
+        self.walls_at(p).map(|wall| wall as u32).min()
+    }
+
+    /// The walls that end at `p` or on which it stands, in any order.
+    pub(crate) fn walls_at(&self, p: DVec2) -> impl Iterator<Item = usize> {
+        sectors::walls_at(self.scene(), self.index(), p)
     }
 
     /// Which sectors between the walls on which the anchor stands are solid; `None` if it stands on none.

@@ -2,6 +2,9 @@
 
 use std::path::Path;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use super::{Scene, dxf, geojson, layers, movingai, ros_map, svg, wkt};
 use crate::read_error::{ReadError, extension};
 use crate::read_file::{SCENE_MAX, read_bytes, read_text};
@@ -34,7 +37,8 @@ pub enum Ros {
 }
 
 /// What a cell is of which a map does not know whether it is free.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Unknown {
     /// No obstacle: only what the map knows to be occupied is one.
     #[default]

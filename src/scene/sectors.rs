@@ -68,11 +68,11 @@ impl Sectors {
     }
 }
 
-/// The walls that end at `at` or pass through it, ascending.
-fn walls_at(scene: &Scene, index: &WallIndex, at: DVec2) -> impl Iterator<Item = usize> {
+/// The walls that end at `at` or pass through it. O(log walls + walls near it).
+pub(super) fn walls_at(scene: &Scene, index: &WallIndex, at: DVec2) -> impl Iterator<Item = usize> {
     index.near(at, at).map(|wall| wall as usize).filter(move |&wall| {
         let [u, v] = scene.ends(wall);
-        orient(u, v, at) == 0.0 && (at == u || at == v || between(u, v, at))
+        at == u || at == v || (orient(u, v, at) == 0.0 && between(u, v, at))
     })
 }
 
@@ -81,8 +81,10 @@ fn walls_at(scene: &Scene, index: &WallIndex, at: DVec2) -> impl Iterator<Item =
 fn holds(scene: &Scene, object: usize, point: TracePoint) -> bool {
     // Whether `p` lies on the height of the point or below: the point's hair is never level.
     let is_below = |p: DVec2| {
-        let (o, east) = (point.at, DVec2::new(1.0, 0.0));
-        p.y < o.y || (p.y == o.y && left_of(o, level(o, east), point))
+        let o = point.at;
+        // Some point at the same height, to the east.
+        let east = DVec2::new(o.x + o.x.abs().max(1.0), o.y);
+        p.y < o.y || (p.y == o.y && left_of(o, east, point))
     };
     let mut winding = 0i64;
     for wall in (0..scene.walls().len()).filter(|&wall| scene.object_of(wall) == object) {
@@ -97,11 +99,6 @@ fn holds(scene: &Scene, object: usize, point: TracePoint) -> bool {
         Inside::EvenOdd => winding % 2 != 0,
         _ => winding != 0,
     }
-}
-
-/// Some point at the height of `o`, to the east.
-fn level(o: DVec2, east: DVec2) -> DVec2 {
-    o + east * o.x.abs().max(1.0)
 }
 
 /// Compares the directions from `at` to `p` and to `q` by their angle in [0, 360) degrees, exactly.

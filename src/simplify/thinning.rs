@@ -191,11 +191,8 @@ fn candidates(model: &Model, anchors: &[DVec2]) -> Vec<Option<[u32; 2]>> {
             continue;
         }
         // Nor does a wall move in the middle of which one is tied.
-        for wall in model.index().near(anchor, anchor) {
-            let [u, v] = model.scene().ends(wall as usize);
-            if orient(u, v, anchor) == 0.0 {
-                model.scene().walls()[wall as usize].iter().for_each(|&v| ends[v as usize].1 = 0);
-            }
+        for wall in model.walls_at(anchor) {
+            model.scene().walls()[wall].iter().for_each(|&v| ends[v as usize].1 = 0);
         }
     }
     let asked = model.scene().walls().iter().zip(0..);

@@ -109,6 +109,12 @@ impl Plan {
         if !(1..=2).contains(&scene.ros) {
             return err(format!("scene.ros: there is no ROS {}; give 1 or 2", scene.ros));
         }
+        if let Some(bad) = scene.flatten.filter(|t| !(t.is_finite() && *t > 0.0)) {
+            return err(format!(
+                "scene.flatten: {} is no tolerance; give a length above 0, or leave it out",
+                number(bad)
+            ));
+        }
         if scene.built_in.is_some() && !(scene.layers.is_empty() && scene.without_layers.is_empty()) {
             return err("scene: `layers` and `without_layers` go with a `file`; built-in scenes have none".into());
         }

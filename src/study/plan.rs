@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::file_places::located;
 use crate::engine::Precision;
 use crate::read_file::{SETTINGS_MAX, read_text};
-use crate::scene::{Ros, SceneOptions};
+use crate::scene::{Ros, SceneOptions, Unknown};
 
 /// A study, as its file describes it. All lengths are in the scene's unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -52,9 +52,20 @@ pub struct ScenePlan {
     /// The layers whose walls are left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub without_layers: Vec<String>,
+    /// How far walls may lie from the curves of an .svg or .dxf, in the scene's unit; without it a 2000th of the drawing's
+    /// longer side.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flatten: Option<f64>,
+    /// What unknown cells of a `map_server`'s map are: `free` or `blocked`.
+    #[serde(default, skip_serializing_if = "is_free")]
+    pub unknown: Unknown,
     /// Which ROS's `map_server` says what cells of a map are occupied: 1 or 2.
     #[serde(default = "default_ros", skip_serializing_if = "is_default_ros")]
     pub ros: u8,
+}
+
+fn is_free(unknown: &Unknown) -> bool {
+    *unknown == Unknown::Free
 }
 
 fn default_ros() -> u8 {
@@ -69,10 +80,11 @@ impl ScenePlan {
     /// What the file leaves open.
     pub(super) fn options(&self) -> SceneOptions {
         SceneOptions {
+            flatten: self.flatten,
+            unknown: self.unknown,
             ros: if self.ros == 1 { Ros::One } else { Ros::Two },
             layers: self.layers.clone(),
             without_layers: self.without_layers.clone(),
-            ..SceneOptions::default()
         }
     }
 }

@@ -240,14 +240,19 @@ impl Folder {
         }
     }
 
-    pub(super) fn save(&self, state: &State) -> Result<(), WriteError> {
-        let path = self.file(STATE);
+    /// An error if the folder has been moved: another may have taken its place.
+    pub(super) fn check_place(&self) -> Result<(), WriteError> {
         if self.lock.as_ref().is_some_and(|lock| !lock.is_in_place()) {
             let cause =
                 std::io::Error::other("the study's folder is not there any more; if it was moved, resume it there");
-            return Err(WriteError::Io { path, cause });
+            return Err(WriteError::Io { path: self.file(STATE), cause });
         }
-        state.save(&path)
+        Ok(())
+    }
+
+    pub(super) fn save(&self, state: &State) -> Result<(), WriteError> {
+        self.check_place()?;
+        state.save(&self.file(STATE))
     }
 
     /// What was said of the run before, if it is as it was written.
@@ -270,8 +275,12 @@ impl Folder {
         self.stage.store(BEGUN, Ordering::SeqCst);
     }
 
-    /// Takes back what this process did here, unless there is something that must not be lost.
+    /// Takes back what this process did here, unless there is something that must not be lost. What has taken the folder's place
+    /// meanwhile is another's.
     pub(super) fn take_back(&self) {
+        if self.lock.as_ref().is_some_and(|lock| !lock.is_in_place()) {
+            return;
+        }
         let stage = self.stage.load(Ordering::SeqCst);
         if stage == NEW {
             // What cannot be removed is taken over by the next run that begins here.
@@ -313,4 +322,23 @@ fn difference(there: &Plan, here: &Plan) -> Option<String> {
     }
     let [there, here] = [there, here].map(|plan| serde_json::to_value(plan).unwrap_or_default());
     first("", &there, &here)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn what_took_the_place_of_a_folder_is_not_taken_back() {
+        let room = tempfile::tempdir().unwrap();
+        let [path, moved] = ["a", "b"].map(|name| room.path().join(name));
+        let folder = Folder::make(&path).unwrap();
+        folder.stage.store(NEW, Ordering::SeqCst);
+        fs::rename(&path, moved).unwrap();
+        fs::create_dir(&path).unwrap();
+        fs::write(path.join(STATE), "another's").unwrap();
+        folder.take_back();
+        assert_eq!(fs::read(path.join(STATE)).unwrap(), b"another's");
+    }
 }

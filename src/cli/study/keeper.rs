@@ -68,6 +68,7 @@ impl Keeper {
     }
 
     fn save(&self, state: &mut State, rows: &mut Rows) -> Result<(), Failure> {
+        self.folder.check_place()?;
         // First the rows: the state must not know of any that are not there.
         rows.parts.as_mut().map_or(Ok(()), |parts| parts.close(state))?;
         self.folder.save(state)?;

@@ -56,7 +56,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         if with_rows {
             let notes = provenance(&study, ("merged", study.plan().run.precision.name()), "several runs");
             let file = folder.file(TRACES);
-            merge_results(&rows, &file, &notes, state.traces())?;
+            merge_results(&rows, &file, study.models()[0].scene(), &notes, state.traces())?;
             let check = check(&file).map_err(|cause| WriteError::Io { path: file, cause })?;
             state.kept.files.insert(TRACES.to_owned(), check);
         }

@@ -85,7 +85,7 @@ impl Parts {
         let (places, writer) = match &mut self.current {
             Some(current) => current,
             None => {
-                let mut writer = ResultWriter::create(&path(&self.folder, first))?;
+                let mut writer = ResultWriter::create(&path(&self.folder, first), &self.scene)?;
                 self.notes.iter().for_each(|(key, value)| writer.note(key, value));
                 self.current.insert((first..first, writer))
             }
@@ -110,7 +110,7 @@ impl Parts {
     pub(super) fn finish(self, folder: &Folder, parts: &[Part], traces: u64) -> Result<Check, Failure> {
         let (parts, whole): (Vec<PathBuf>, _) =
             (parts.iter().map(|part| path(&self.folder, part.places.start)).collect(), folder.file(TRACES));
-        merge_results(&parts, &whole, &self.notes, traces)?;
+        merge_results(&parts, &whole, &self.scene, &self.notes, traces)?;
         check(&whole).map_err(|e| unread(&whole, &e))
     }
 }

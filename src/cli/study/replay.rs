@@ -86,7 +86,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         write(target, &Drawing::new(model).with(&trace, &record), &args.look)?;
     }
     if let Some(path) = &args.events {
-        let mut events = EventWriter::create_labelled(path, model.scene())?;
+        let mut events = EventWriter::create(path, model.scene())?;
         events.write(model.scene(), &record)?;
         events.finish()?;
     }

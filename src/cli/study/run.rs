@@ -117,7 +117,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         let folder = folder.clone();
         move || folder.take_back()
     })));
-    let ended = begin(&folder, &study, &base, args.shard)
+    let ended = begin(&folder, &guard, &study, &base, args.shard)
         .and_then(|state| proceed(&folder, &guard, &study, state, engines, args.json));
     if ended.is_err() {
         folder.take_back();
@@ -126,7 +126,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
 }
 
 /// How far a folder is with this part of a study, which it remembers from now on.
-fn begin(folder: &Folder, study: &Study, base: &Path, part: Shard) -> Result<State, Failure> {
+fn begin(folder: &Folder, guard: &Guard, study: &Study, base: &Path, part: Shard) -> Result<State, Failure> {
     let held = folder.held(study, part)?;
     if let Some(state) = &held {
         let (shown, done, all) = (folder.path().display(), state.place(study), study.places(part));
@@ -138,15 +138,22 @@ fn begin(folder: &Folder, study: &Study, base: &Path, part: Shard) -> Result<Sta
     // What is written besides the answer may be asked for in another way than before.
     folder.remember(study.plan(), base, part)?;
     let state = held.unwrap_or_else(|| State::new(study, part));
+    // Once a state is there, the study can be gone on with, whenever it is stopped.
+    guard.change(stopped_before(folder.path()));
     folder.save(&state)?;
     Ok(state)
 }
 
-pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
-    let shown = args.folder.display().to_string();
-    let guard = Guard::new(Last::Save(Box::new(move || {
+/// What is said of a study that is stopped before anything new is done.
+fn stopped_before(folder: &Path) -> Last {
+    let shown = folder.display().to_string();
+    Last::Save(Box::new(move || {
         Failure::checkpoint(anyhow!("stopped before it went on: do so with `tautline study resume {shown}`"))
-    })));
+    }))
+}
+
+pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
+    let guard = Guard::new(stopped_before(&args.folder));
     let folder = Arc::new(Folder::go_on(&args.folder)?);
     let (study, _) = folder.study(&args.base)?;
     let state = folder.state_or_new(&study)?;

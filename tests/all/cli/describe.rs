@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use arrow_array::cast::AsArray;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use serde_json::{Value, json};
 
 use super::Folder;
@@ -167,7 +169,8 @@ fn things_keep_their_names() {
 
     folder.write(
         "s.toml",
-        "[scene]\nfile = \"hall.geojson\"\n[walk]\nkind = \"given\"\nfile = \"drag.csv\"\n[run]\ntraces = 1\nblock = 1\n",
+        "[scene]\nfile = \"hall.geojson\"\n[walk]\nkind = \"given\"\nfile = \"drag.csv\"\n[run]\ntraces = 1\nblock = 1\n\
+        [outputs]\ntraces = true\n",
     );
     let shown = folder.done("study run s.toml --engine cpu --out s").stdout;
     assert!(shown.contains("  round pillar 3, pillar 3"), "{shown}");
@@ -179,6 +182,57 @@ fn things_keep_their_names() {
         assert_eq!(contact["label"], "pillar 3");
     }
     assert!(folder.text("s/report.html").contains("pillar 3 (6, 4) left"));
+    let file = std::fs::File::open(folder.path("s/traces.parquet")).unwrap();
+    let mut batches = ParquetRecordBatchReaderBuilder::try_new(file).unwrap().build().unwrap();
+    let row = batches.next().unwrap().unwrap();
+    let found = row.column_by_name("labels").unwrap().as_list::<i32>().value(0);
+    let found: Vec<Option<&str>> = found.as_string::<i32>().iter().collect();
+    assert_eq!(found, vec![Some("pillar 3"); labels.len()]);
+}
+
+#[test]
+fn what_a_file_leaves_open_is_said_in_a_study() {
+    let folder = hall();
+    folder.write(
+        "round.svg",
+        r#"<svg xmlns="http://www.w3.org/2000/svg"><circle cx="5" cy="5" r="4" fill="black"/></svg>"#,
+    );
+    folder.write(
+        "map.yaml",
+        "image: map.pgm\nresolution: 1\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.196\nnegate: 0\n",
+    );
+    folder.write("map.pgm", "P2\n5 2\n255\n205 254 254 254 0\n205 254 254 254 0\n");
+    let walls = |file: &str, line: &str| {
+        folder.write(
+            "o.toml",
+            format!(
+                "[scene]\nfile = \"{file}\"\nanchor = [2.5, 0.5]\n{line}\n[walk]\nkind = \"uniform\"\nstep = 0.1\nsteps = 9\n\
+                [run]\ntraces = 9\nblock = 9\n"
+            ),
+        );
+        let shown = folder.done("study run o.toml --engine cpu --dry-run").stdout;
+        let line = shown.lines().find(|line| line.contains(" walls,")).unwrap().to_owned();
+        line.split(" walls,").next().unwrap().rsplit(' ').next().unwrap().parse::<usize>().unwrap()
+    };
+    for (file, line, options) in [
+        ("round.svg", "", ""),
+        ("round.svg", "flatten = 0.5", "--flatten 0.5"),
+        ("round.svg", "flatten = 0.01", "--flatten 0.01"),
+        ("map.yaml", "", ""),
+        ("map.yaml", "unknown = \"blocked\"", "--unknown blocked"),
+    ] {
+        let found = report(&folder, &format!("check --scene {file} --json {options}"));
+        assert_eq!(walls(file, line), found["scene"]["walls"].as_u64().unwrap() as usize, "{file} {line}");
+    }
+    assert!(walls("round.svg", "flatten = 0.5") < walls("round.svg", "flatten = 0.01"));
+    assert!(walls("map.yaml", "") < walls("map.yaml", "unknown = \"blocked\""));
+    for (line, parts) in [
+        ("flatten = 0", ["line 4", "scene.flatten: 0 is no tolerance"]),
+        ("unknown = \"wall\"", ["line 4", "`free` or `blocked`"]),
+    ] {
+        folder.write("o.toml", format!("[scene]\nfile = \"round.svg\"\nanchor = [0, 0]\n{line}\n[walk]\nkind = \"uniform\"\nstep = 1\nsteps = 9\n"));
+        folder.refused(2, "study run o.toml", &parts);
+    }
 }
 
 #[test]

@@ -276,13 +276,17 @@ fn a_full_disk_ends_a_study_that_then_goes_on() {
 #[test]
 fn a_folder_that_was_moved_is_not_written_to_again() {
     let folder = study();
+    // Blocks of a moment, without end.
+    folder.write("endless.toml", ENDLESS.replace("20_000", "200"));
     let mut child = start(&folder, "study run endless.toml --out a");
-    wait_for(&mut child, || folder.path("a/state.bin").exists());
+    wait_for(&mut child, || fs::read_dir(folder.path("a/traces")).is_ok_and(|mut rows| rows.next().is_some()));
     fs::rename(folder.path("a"), folder.path("b")).unwrap();
     fs::create_dir(folder.path("a")).unwrap();
+    folder.write("a/state.bin", "another's");
     assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
     let finished: Finished = child.wait_with_output().unwrap().into();
-    assert_eq!(finished.code, Some(1), "{}", finished.stderr);
-    assert!(names(&folder, "a").is_empty(), "{:?}", names(&folder, "a"));
+    assert_eq!(names(&folder, "a"), ["state.bin"]);
+    assert_eq!(folder.text("a/state.bin"), "another's");
     File::open(folder.path("b/state.bin")).unwrap();
+    assert_eq!(finished.code, Some(1), "{}", finished.stderr);
 }

@@ -7,6 +7,7 @@ use std::sync::{LazyLock, Mutex};
 
 use tautline::engine::{Cpu, Engine, Job};
 use tautline::output::merge_results;
+use tautline::scene::Scene;
 use tautline::study::{AnchorPlan, Plan, Shard, State, Study, WalkPlan, run};
 
 /// Reads `input` as a study's file, or, where it begins with a brace, as a plan that a study's folder remembers; what is taken
@@ -88,7 +89,9 @@ pub(super) fn merge(input: &[u8], folder: &Path) {
     let Some((&rows, bytes)) = input.split_first() else { return };
     let [from, to, again] = ["from", "to", "again"].map(|name| folder.join(name).with_extension("parquet"));
     fs::write(&from, bytes).expect("the folder can be written to");
-    let merge = |from: &PathBuf, to: &PathBuf| merge_results(std::slice::from_ref(from), to, &[], rows.into());
+    let no_walls = Scene::new([]).expect("it has no walls");
+    let merge =
+        |from: &PathBuf, to: &PathBuf| merge_results(std::slice::from_ref(from), to, &no_walls, &[], rows.into());
     match merge(&from, &to) {
         Ok(()) => {
             merge(&to, &again).unwrap_or_else(|e| panic!("{e}"));
