@@ -8,10 +8,10 @@ use tautline::escape::{escaped, escaped_path};
 use tautline::example::{Walker, floor_plan};
 use tautline::parse_number as number;
 use tautline::scene::{AnchorError, Model, Ros, Scene, SceneOptions, Unknown, read_scene_with};
+use tautline::stream::Source;
 use tautline::study::anchor_warnings;
 use tautline::trace::TraceReader;
 
-use super::batches::Source;
 use super::failure::Failure;
 use super::violations::{OnViolation, Violations};
 
