@@ -198,6 +198,8 @@ impl<'a> Reader<'a> {
             "POINT" => return Ok(()),
             "INSERT" => return self.insert(entity, &context),
             "HATCH" => {
+                // Its paths take time where it is inserted again and again, even if nothing comes of them.
+                self.visited += entity.groups.len() / 16;
                 if let Some(other) = hatch::unpainted(entity)? {
                     return self.pass_over(other);
                 }
