@@ -211,3 +211,12 @@ fn broken_hatches_are_refused() {
     let anchors = parsed(&file("", &[], &format!("{} 8=anchor", hatch(0, &[(3, &square(0.0, 1.0))])))).unwrap_err();
     assert!(anchors.contains("HATCH: lies on the layer anchor, which is for one POINT"), "{anchors}");
 }
+
+#[test]
+fn long_paths_that_are_inserted_again_and_again_are_refused() {
+    let corners: String = (0..20_000).map(|i| format!(" 10={i} 20={}", i % 7)).collect();
+    let gradient = hatch(0, &[(3, &format!("93=20000{corners}"))]) + " 450=1";
+    let array = "INSERT 2=A 10=0 20=0 70=1000 71=1000";
+    let what = parsed(&file("", &[("2=A", &gradient)], array)).unwrap_err();
+    assert!(what.contains("with all that is inserted again and again, the drawing is too large"), "{what}");
+}

@@ -199,7 +199,7 @@ impl<'a> Reader<'a> {
             "INSERT" => return self.insert(entity, &context),
             "HATCH" => {
                 // Its paths take time where it is inserted again and again, even if nothing comes of them.
-                self.visited += entity.groups.len() / 16;
+                self.visited += entity.groups.len() / 4;
                 if let Some(other) = hatch::unpainted(entity)? {
                     return self.pass_over(other);
                 }
