@@ -2,8 +2,9 @@
 
 use serde_json::{Map, Value, json};
 use tautline::engine::Phase;
+use tautline::environment::Environment;
+use tautline::report::Spread;
 use tautline::report::bench::{Measured, Row};
-use tautline::report::{Environment, Spread};
 
 /// The whole document.
 pub(super) fn report(environment: &Environment, seed: u64, measured: &Measured) -> Value {

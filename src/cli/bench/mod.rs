@@ -8,8 +8,8 @@ use std::time::Duration;
 use anyhow::anyhow;
 use glam::DVec2;
 use tautline::engine::WINDOW;
+use tautline::environment::Environment;
 use tautline::gpu::{AdapterChoice, Device};
-use tautline::report::Environment;
 use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured, Plan, Setting, Sweep, measure};
 
 use super::engine::{named, notes};

@@ -1,8 +1,9 @@
 //! A bench as tables.
 
 use tautline::engine::Phase;
+use tautline::environment::Environment;
+use tautline::report::Spread;
 use tautline::report::bench::{Plan, Row, Setting, Sweep};
-use tautline::report::{Environment, Spread};
 
 use super::super::summary::{counted, grouped, short};
 
