@@ -28,7 +28,7 @@ impl Player for Course {
         Course::at(self)
     }
 
-    fn ask(&mut self, shared: &Shared<'_, '_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Sweeping>> {
+    fn ask(&mut self, shared: &Shared<'_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Sweeping>> {
         let (lists, job) = (shared.lists, shared.job);
         let model = lists.model();
         let query = job.time(Phase::Queries, || {
@@ -52,7 +52,7 @@ impl Player for Course {
 
     fn answered(
         &mut self,
-        shared: &Shared<'_, '_>,
+        shared: &Shared<'_>,
         trace: &SettledTrace,
         (list, query): (&List, &Query),
         found: &Found,
@@ -84,14 +84,7 @@ impl Player for Course {
 }
 
 /// Goes on through the window that was asked for last, whose pivot is not worth a list: it is answered here and now.
-fn look(
-    course: &mut Course,
-    shared: &Shared<'_, '_>,
-    trace: &SettledTrace,
-    pivot: u32,
-    query: &Query,
-    tools: &mut Tools,
-) {
+fn look(course: &mut Course, shared: &Shared<'_>, trace: &SettledTrace, pivot: u32, query: &Query, tools: &mut Tools) {
     let Tools { slopes, scratch, found } = tools;
     let job = shared.job;
     let tried = job.time(Phase::Kernel, || shared.lists.look_into(pivot, query, shared.simd, scratch, found));

@@ -19,20 +19,20 @@ const TELL: usize = 1 << 12;
 const RECENT: usize = 256;
 
 /// Evaluates traces on all cores, for one model.
-pub struct Cpu<'m> {
-    lists: Lists<'m>,
+pub struct Cpu {
+    lists: Lists,
     window: usize,
     simd: Simd,
 }
 
-impl<'m> Cpu<'m> {
+impl Cpu {
     /// An engine for `model`.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: Arc<Model>) -> Self {
         Self::with_lists(Lists::new(model))
     }
 
     /// An engine that tries the vertices of `lists`.
-    pub fn with_lists(lists: Lists<'m>) -> Self {
+    pub fn with_lists(lists: Lists) -> Self {
         Cpu { lists, window: WINDOW, simd: Simd::detected() }
     }
 
@@ -59,12 +59,12 @@ impl<'m> Cpu<'m> {
     }
 
     /// The lists that it has made so far.
-    pub fn lists(&self) -> &Lists<'m> {
+    pub fn lists(&self) -> &Lists {
         &self.lists
     }
 }
 
-impl Engine for Cpu<'_> {
+impl Engine for Cpu {
     fn name(&self) -> &'static str {
         "cpu"
     }
@@ -95,8 +95,8 @@ impl Engine for Cpu<'_> {
 }
 
 /// What evaluates one trace after the other.
-struct Lane<'e, 'm> {
-    engine: &'e Cpu<'m>,
+struct Lane<'e> {
+    engine: &'e Cpu,
     course: Course,
     slopes: Slopes,
     scratch: Scratch,
@@ -107,7 +107,7 @@ struct Lane<'e, 'm> {
     recent: [Option<(u32, Arc<List>)>; RECENT],
 }
 
-impl Lane<'_, '_> {
+impl Lane<'_> {
     fn evaluate(&mut self, trace: &SettledTrace, job: &Job) -> Result<TraceRecord, EngineError> {
         let Cpu { lists, window, simd } = self.engine;
         let model = lists.model();

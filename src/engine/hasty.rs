@@ -68,7 +68,7 @@ impl Player for Hasty {
         self.walk.at
     }
 
-    fn ask(&mut self, shared: &Shared<'_, '_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Deciding>> {
+    fn ask(&mut self, shared: &Shared<'_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Deciding>> {
         let lists = shared.lists;
         let (model, frame, rope) = (lists.model(), lists.frame(), &self.walk.rope);
         let (pivot, contact) = (rope.pivot(), rope.contacts().last());
@@ -122,7 +122,7 @@ impl Player for Hasty {
 
     fn answered(
         &mut self,
-        shared: &Shared<'_, '_>,
+        shared: &Shared<'_>,
         trace: &SettledTrace,
         (list, question): (&List, &Question),
         answer: &Answer,
@@ -153,7 +153,7 @@ impl Player for Hasty {
     }
 
     /// Relative to the pivot where the list is its own, so that what is near is as exact as f32 can say.
-    fn coordinates(lists: &Lists<'_>, pivot: u32, list: &List) -> Vec<[f32; 2]> {
+    fn coordinates(lists: &Lists, pivot: u32, list: &List) -> Vec<[f32; 2]> {
         if list.is_of_any() {
             return list.coordinates().collect();
         }

@@ -41,7 +41,7 @@ pub const WINDOW: usize = 256;
 const BATCH: usize = 8192;
 
 /// Turns batches of independent traces into records, for the model that the engine was made for.
-pub trait Engine {
+pub trait Engine: Send {
     /// The engine's name, as the command line knows it.
     fn name(&self) -> &'static str;
 

@@ -2,6 +2,8 @@
 //! the first crossing in list order. It is wrong on collinear walls, on several wraps in one step, and on rounding; it is
 //! kept to be measured, not to be used. So is the note's remedy for walls on one line.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::walk::Walk;
@@ -15,15 +17,15 @@ use crate::trace::SettledTrace;
 const INF: f64 = 1e9;
 
 /// Listing 1 of the note. O(obstacle points) a step, on one thread.
-#[derive(Clone, Copy)]
-pub struct Note<'m> {
-    model: &'m Model,
+#[derive(Clone)]
+pub struct Note {
+    model: Arc<Model>,
     furthest: bool,
 }
 
-impl<'m> Note<'m> {
+impl Note {
     /// An engine for `model`.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: Arc<Model>) -> Self {
         Note { model, furthest: false }
     }
 
@@ -39,7 +41,7 @@ impl<'m> Note<'m> {
 /// A ray as the listing has it: a segment to a far point.
 type Ray = (DVec2, DVec2);
 
-impl Engine for Note<'_> {
+impl Engine for Note {
     fn name(&self) -> &'static str {
         "note"
     }
@@ -49,7 +51,7 @@ impl Engine for Note<'_> {
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        let model = self.model;
+        let model = &*self.model;
         // The flattened list of the obstacle segments' ends: a shared end stands in it once a segment.
         let obstacle_points: Vec<(u32, DVec2)> =
             model.scene().walls().iter().flatten().map(|&v| (v, model.vertices()[v as usize])).collect();
