@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::walk::Walk;
+use super::progress::Progress;
 use super::{Engine, EngineError, Job};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
@@ -29,18 +29,18 @@ impl Engine for Reference {
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
         let model = &*self.model;
         let all = 0..model.vertices().len() as u32;
-        let mut walk = Walk::new();
+        let mut progress = Progress::new();
         let mut records = Vec::with_capacity(traces.len());
         for trace in traces {
-            walk.start(model, trace);
-            while !walk.is_done(trace) {
+            progress.start(model, trace);
+            while !progress.is_done(trace) {
                 job.go_on()?;
-                let before = trace.step(walk.at);
-                walk.next(model, trace, all.clone());
-                job.count(trace.step(walk.at) - before);
+                let before = trace.step(progress.at);
+                progress.next(model, trace, all.clone());
+                job.count(trace.step(progress.at) - before);
                 job.count_tests(all.len() as u64);
             }
-            records.push(walk.record(trace));
+            records.push(progress.record(trace));
         }
         Ok(records)
     }

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use super::hasty::Hasty;
-use super::{Engine, EngineError, Job, Precision, WINDOW, batch};
+use super::deciding::Hasty;
+use super::rounds;
 use crate::candidates::{LISTS_BUDGET, Lists};
+use crate::engine::{Engine, EngineError, Job, Precision, WINDOW};
 use crate::gpu::{AdapterSummary, DECIDE_WGSL, Deciding, Device, GpuError, GpuPass, HALVES, Tuning};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
@@ -76,7 +77,7 @@ impl Engine for FastGpu {
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        batch::evaluate::<Hasty>(&mut self.pass, &self.lists, self.window, traces, job)
+        rounds::evaluate::<Hasty>(&mut self.pass, &self.lists, self.window, traces, job)
     }
 
     fn batch(&self) -> usize {

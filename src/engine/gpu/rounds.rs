@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use super::{EngineError, Job, Phase};
 use crate::candidates::{List, Lists, Simd, Slopes};
+use crate::engine::{EngineError, Job, Phase};
 use crate::gpu::{GpuPass, HALVES, Kernel};
 use crate::rope::TraceRecord;
 use crate::scene::Model;

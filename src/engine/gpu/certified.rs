@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use super::course::Course;
-use super::{Engine, EngineError, Job, WINDOW, batch};
+use super::rounds;
 use crate::candidates::{LISTS_BUDGET, Lists};
+use crate::engine::windows::Windows;
+use crate::engine::{Engine, EngineError, Job, WINDOW};
 use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass, HALVES, SWEEP_WGSL, Tuning};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
@@ -82,7 +83,7 @@ impl Engine for Gpu {
         if bounds(traces).is_some_and(|bounds| self.lists.cover(bounds)) {
             self.pass.forget();
         }
-        batch::evaluate::<Course>(&mut self.pass, &self.lists, self.window, traces, job)
+        rounds::evaluate::<Windows>(&mut self.pass, &self.lists, self.window, traces, job)
     }
 
     fn batch(&self) -> usize {
