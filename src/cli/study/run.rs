@@ -251,15 +251,15 @@ impl Engines {
     fn open(args: &EngineArgs, study: &Study) -> Result<Self, Failure> {
         let mut all = Engines { engines: Vec::new(), on: String::new() };
         for model in study.models() {
-            let (engine, on) = args.open_for(study.plan().run.precision, model)?;
-            if ["note", "funnel"].contains(&engine.name()) {
+            let opened = args.open_for(study.plan().run.precision, model)?;
+            if !opened.kind.counts_events() {
                 return Err(Failure::input(anyhow!(
                     "--engine: {} does not count the same events as the other engines; give one of those for a study",
-                    engine.name()
+                    opened.kind.name
                 )));
             }
-            all.engines.push(engine);
-            all.on = on;
+            all.engines.push(opened.engine);
+            all.on = opened.on.to_string();
         }
         Ok(all)
     }
