@@ -5,9 +5,9 @@ use std::sync::LazyLock;
 use std::{iter, slice};
 
 use tautline::candidates::{LISTS_BUDGET, Lists};
-use tautline::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Reference};
+use tautline::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Promise, Reference};
 use tautline::gpu::{AdapterChoice, Device, SWEEP_WGSL};
-use tautline::rope::{TraceRecord, replay};
+use tautline::rope::{Side, TraceRecord, replay};
 use tautline::scene::Model;
 use tautline::simplify::simplify;
 use tautline::trace::SettledTrace;
@@ -85,6 +85,36 @@ fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
 /// All but the events: `funnel` knows no contacts that are passed straight.
 fn without_events(record: &TraceRecord) -> TraceRecord {
     TraceRecord { events: Vec::new(), ..record.clone() }
+}
+
+/// Fails unless a record is what its engine promises, given the reference's. Of traces that break the rules, only those that
+/// promise events promise anything.
+pub(crate) fn is_as_promised(
+    promise: Promise,
+    model: &Model,
+    trace: &SettledTrace,
+    truth: &TraceRecord,
+    found: &TraceRecord,
+) {
+    match promise {
+        Promise::Events => assert_eq!(found, truth),
+        Promise::Ropes if trace.breaks_rules() => {}
+        Promise::Ropes => {
+            assert_eq!(ropes(model, trace, found), ropes(model, trace, truth));
+            assert_eq!(without_events(found), without_events(truth));
+        }
+        Promise::Nothing => is_sound(model, trace, found),
+    }
+}
+
+/// The taut rope after every step.
+fn ropes(model: &Model, trace: &SettledTrace, record: &TraceRecord) -> Vec<Vec<(u32, Side)>> {
+    let ends = trace.ends();
+    let mut ropes = Vec::with_capacity(ends.len());
+    replay(model.anchor(), model.vertices(), ends.len(), &record.events, |k, rope| {
+        ropes.push(rope.taut(ends[k]).iter().map(|c| (c.vertex, c.side)).collect());
+    });
+    ropes
 }
 
 /// Every number is finite, and the numbers, the rope and the events of a record say the same.
