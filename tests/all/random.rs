@@ -152,10 +152,6 @@ fn lawless_traces_are_lawful_until_they_cross_a_wall() {
         for touching in [false, true] {
             check_traces(kind, touching, 300, Recipe::lawless_trace, |model, trace, settled| {
                 let truth = run(&mut Reference::new(model.clone()), std::slice::from_ref(settled)).remove(0);
-                assert_eq!(
-                    run(&mut Cpu::new(model.clone()), std::slice::from_ref(settled)),
-                    std::slice::from_ref(&truth)
-                );
                 let Some(violation) = settled.violation() else { return };
                 assert_eq!((truth.status, truth.steps), (Status::Violation, trace.points.len() as u64 - 1));
                 // The step before may pass a wall on another side when the trace does not go on from there.
