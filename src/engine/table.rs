@@ -35,11 +35,14 @@ pub enum Promise {
     Nothing,
 }
 
+/// Makes an engine on a device.
+type MakeOnDevice = fn(Device, Arc<Model>, &Options) -> Result<Box<dyn Engine>, GpuError>;
+
 /// How an engine is made, by what it runs on.
 #[derive(Clone, Copy)]
 pub(super) enum Open {
     /// On a device.
-    Device(fn(Device, Arc<Model>, &Options) -> Result<Box<dyn Engine>, GpuError>),
+    Device(MakeOnDevice),
     /// On all cores.
     Threads(fn(Arc<Model>, &Options) -> Box<dyn Engine>),
     /// On one thread.
