@@ -123,7 +123,9 @@ impl From<EngineError> for Failure {
         match error {
             EngineError::Gpu(error) => error.into(),
             EngineError::Stopped => Failure::interrupted(false),
-            EngineError::Unfit { .. } => Failure::input(error.into()),
+            EngineError::Unfit { .. } | EngineError::NoDevice { .. } | EngineError::Precision { .. } => {
+                Failure::input(error.into())
+            }
         }
     }
 }

@@ -17,7 +17,7 @@
 //!
 //! let folder = Arc::new(Folder::make(&room.path().join("study"))?);
 //! let session = Session::begin(folder, study.clone(), Path::new("."), Shard::WHOLE)?;
-//! let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Cpu::new(&study.models()[0]))];
+//! let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Cpu::new(study.models()[0].clone()))];
 //! let left = session.prepare(Computed::by(&*engines[0], "threads"))?;
 //! assert_eq!((left.traces, left.steps), (100, 2000));
 //! let report = session.run(&mut engines, &Job::new())?;
@@ -196,7 +196,7 @@ impl Session {
     /// # Panics
     ///
     /// Without [`prepare`](Self::prepare), and as [`study::run`](crate::study::run).
-    pub fn run(&self, engines: &mut [Box<dyn Engine + '_>], job: &Job) -> Result<RunReport, SessionError> {
+    pub fn run(&self, engines: &mut [Box<dyn Engine>], job: &Job) -> Result<RunReport, SessionError> {
         let start = Instant::now();
         let (shard, traces_before, mut place) = {
             let state = locked(&self.state);
@@ -306,7 +306,7 @@ impl Session {
         took: Duration,
         spent: &Spent,
         [traces, steps]: [u64; 2],
-        engines: &[Box<dyn Engine + '_>],
+        engines: &[Box<dyn Engine>],
     ) -> RunCost {
         let here = Environment::here(None);
         let seconds = took.as_secs_f64();

@@ -1,11 +1,14 @@
 //! Extreme cases on every engine. Those that promise right ropes must all give the same events, and the two methods the same
 //! ropes, after every step; `fast` and `note` must come to an end with records that are sound in themselves.
 
+use std::sync::Arc;
 use std::sync::OnceLock;
 
 use glam::DVec2;
 use tautline::candidates::{Lists, Simd};
-use tautline::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Note, Reference};
+use tautline::engine::{
+    Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Options, Promise, REFERENCE, Reference, WINDOW,
+};
 use tautline::example::extremes::{Extreme, FAMILIES};
 use tautline::example::{Walker, random_walls, settled_walks};
 use tautline::geometry::{COORDINATE_MAX, COORDINATE_MIN, between, orient};
@@ -16,6 +19,7 @@ use tautline::scene::Model;
 use tautline::trace::{SettledTrace, Trace, settle};
 
 use crate::corpus::bodies::engines::is_sound;
+use crate::engine_table::Subject;
 use crate::support::{gpu_on, software};
 
 macro_rules! families {
@@ -83,7 +87,7 @@ fn complaints(case: &Extreme) -> Vec<String> {
     for trace in &traces {
         assert_eq!(trace.violation(), None, "{}", case.name);
     }
-    let truth = run(&mut Reference::new(&model), &traces);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
     let mut wrong: Vec<String> = Vec::from_iter(left_out(&model, &truth));
     let mut compare = |name: &str, engine: &mut dyn Engine| {
         wrong.extend(difference(&truth, &run(engine, &traces)).map(|what| format!("{name}, {what}")));
@@ -91,41 +95,37 @@ fn complaints(case: &Extreme) -> Vec<String> {
     // What has very many steps is evaluated once by each engine, and what a device would take minutes for, by the others.
     let is_short = traces.iter().map(SettledTrace::steps).sum::<usize>() <= 100_000;
     let suits_devices = truth.iter().all(|record| record.events.len() <= LONGEST_CHAIN);
-    compare("cpu", &mut Cpu::new(&model));
     if is_short {
-        compare("cpu, window 1", &mut Cpu::new(&model).window(1));
-        compare("cpu, lists at once", &mut Cpu::with_lists(Lists::new(&model).after(0)));
-        compare("cpu, all vertices", &mut Cpu::new(&model).keep_all());
-        compare("cpu, baseline", &mut Cpu::new(&model).simd(Simd::baseline()));
+        compare("cpu, lists at once", &mut Cpu::with_lists(Lists::new(model.clone()).after(0)));
+        compare("cpu, baseline", &mut Cpu::new(model.clone()).simd(Simd::baseline()));
     }
     if suits_devices {
-        compare("gpu", &mut gpu_on(device(), Lists::new(&model).after(0)));
+        compare("gpu, lists at once", &mut gpu_on(device(), Lists::new(model.clone()).after(0)));
     }
-    if suits_devices && is_short {
-        compare("gpu, lists later", &mut Gpu::new(device(), &model).unwrap());
-        compare("gpu, all vertices", &mut gpu_on(device(), Lists::new(&model).keep_all()));
-    }
-    let sound = |engine: &mut dyn Engine| {
-        let records = run(engine, &traces);
-        assert_eq!(records.len(), traces.len());
-        traces.iter().zip(&records).for_each(|(trace, record)| is_sound(&model, trace, record));
-    };
-    sound(&mut Note::new(&model));
-    if suits_devices {
-        sound(&mut FastGpu::new(device(), &model).unwrap());
-    }
-    if suits_devices && is_short {
-        sound(&mut FastGpu::new(device(), &model).unwrap().keep_all());
-    }
-    match Funnel::new(&model).evaluate(&traces, &Job::new()) {
-        Ok(found) => {
-            wrong.extend(other_ropes(&model, case, &truth, &found));
-            wrong.extend(other_end(&truth, &run(&mut Funnel::new(&model).final_only(), &traces)));
+    for subject in Subject::all().iter().filter(|subject| subject.kind != &REFERENCE) {
+        let Options { window, keep_all, .. } = subject.options;
+        let is_usual = window == WINDOW && !keep_all;
+        // Rounds of one leg each take devices too long.
+        let suits = !subject.kind.needs_gpu() || suits_devices && window == WINDOW;
+        if !suits || !is_usual && !is_short {
+            continue;
         }
-        Err(EngineError::Unfit { engine: "funnel", why }) if spans_too_much(case) => {
-            assert!(why.contains("triangulation"))
+        match (subject.open(&model).evaluate(&traces, &Job::new()), subject.promise()) {
+            (Ok(found), Promise::Events) => {
+                wrong.extend(difference(&truth, &found).map(|what| format!("{subject}, {what}")))
+            }
+            (Ok(found), Promise::Ropes) => {
+                wrong.extend(other_ropes(&model, case, &truth, &found).map(|what| format!("{subject}, {what}")))
+            }
+            (Ok(found), Promise::Nothing) => subject.check(&model, &traces, &truth, &found),
+            (Err(EngineError::Unfit { why, .. }), Promise::Ropes) if spans_too_much(case) => {
+                assert!(why.to_string().contains("triangulation"))
+            }
+            (Err(error), _) => wrong.push(format!("{subject}: {error}")),
         }
-        Err(error) => wrong.push(format!("funnel: {error}")),
+    }
+    if let Ok(found) = Funnel::new(model.clone()).final_only().evaluate(&traces, &Job::new()) {
+        wrong.extend(other_end(&truth, &found));
     }
     wrong
 }
@@ -172,7 +172,7 @@ fn left_out(model: &Model, truth: &[TraceRecord]) -> Option<String> {
 
 /// Whether the funnel has another taut rope after some step. Of very deep ropes only the length, bit for bit, and the depth
 /// are compared after each step, and all of the last.
-fn other_ropes(model: &Model, case: &Extreme, truth: &[TraceRecord], found: &[TraceRecord]) -> Option<String> {
+fn other_ropes(model: &Arc<Model>, case: &Extreme, truth: &[TraceRecord], found: &[TraceRecord]) -> Option<String> {
     for ((trace, truth), found) in case.traces.iter().zip(truth).zip(found) {
         let whole = trace.points.len() * truth.max_depth as usize <= 1 << 21;
         let [right, wrong] = [truth, found].map(|record| {
@@ -185,14 +185,11 @@ fn other_ropes(model: &Model, case: &Extreme, truth: &[TraceRecord], found: &[Tr
             ropes
         });
         if let Some(step) = (0..right.len()).find(|&k| right[k] != wrong[k]) {
-            return Some(format!(
-                "funnel, trace {}, step {step}: {:?} instead of {:?}",
-                trace.id, wrong[step], right[step]
-            ));
+            return Some(format!("trace {}, step {step}: {:?} instead of {:?}", trace.id, wrong[step], right[step]));
         }
         let [right, wrong] = [truth, found].map(|record| TraceRecord { events: vec![], ..record.clone() });
         if right != wrong {
-            return Some(format!("funnel, trace {}: another final rope, or another longest one", trace.id));
+            return Some(format!("trace {}: another final rope, or another longest one", trace.id));
         }
     }
     None
@@ -222,11 +219,11 @@ fn long_chains_on_devices() {
     case.traces = (0..).zip(ways).map(|(id, points)| Trace { id, points }).collect();
     let model = case.model();
     let traces = settled(&model, &case);
-    let truth = run(&mut Reference::new(&model), &traces);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
     assert!(truth.iter().all(|record| record.events.len() > 1 << 16), "too short");
     assert!(truth[0].depth > 1 << 16 && truth[1].depth < 10, "another shape");
-    assert_eq!(difference(&truth, &run(&mut Gpu::new(device(), &model).unwrap(), &traces)), None);
-    let found = run(&mut FastGpu::new(device(), &model).unwrap(), &traces);
+    assert_eq!(difference(&truth, &run(&mut Gpu::new(device(), model.clone()).unwrap(), &traces)), None);
+    let found = run(&mut FastGpu::new(device(), model.clone()).unwrap(), &traces);
     traces.iter().zip(&found).for_each(|(trace, record)| is_sound(&model, trace, record));
     // Whole numbers and halves: f32 holds them all.
     assert_eq!(difference(&truth, &found), None);
@@ -242,7 +239,7 @@ fn scaling_and_moving_changes_no_event() {
         assert!(cases.len() >= least, "{} cases", cases.len());
         for case in cases {
             let model = case.model();
-            let records = run(&mut Reference::new(&model), &settled(&model, &case));
+            let records = run(&mut Reference::new(model.clone()), &settled(&model, &case));
             let events: Vec<_> = records.into_iter().map(|record| record.events).collect();
             assert!(events.iter().map(Vec::len).sum::<usize>() > 100, "nothing happened to compare");
             assert!(events == *first.get_or_insert(events.clone()), "{}", case.name);
@@ -263,12 +260,12 @@ fn the_last_magnitudes_taken_are_among_the_scales() {
 /// Too much for the reference, which looks at 200,000 vertices a step: three engines against each other.
 #[test]
 fn very_many_walls_and_steps() {
-    let model = Model::new(random_walls(100_000, 8), None).unwrap();
+    let model = Arc::new(Model::new(random_walls(100_000, 8), None).unwrap());
     let traces = settled_walks(&model, Walker { step: 0.002, steps: 2000, seed: 3 }, 300);
-    let records = run(&mut Cpu::new(&model), &traces);
+    let records = run(&mut Cpu::new(model.clone()), &traces);
     assert!(records.iter().map(|record| record.events.len()).sum::<usize>() > 10_000, "nothing happened to compare");
-    assert_eq!(difference(&records, &run(&mut Gpu::new(device(), &model).unwrap(), &traces)), None);
-    let found = run(&mut Funnel::new(&model), &traces);
+    assert_eq!(difference(&records, &run(&mut Gpu::new(device(), model.clone()).unwrap(), &traces)), None);
+    let found = run(&mut Funnel::new(model.clone()), &traces);
     for (ours, found) in records.into_iter().zip(found) {
         assert_eq!(TraceRecord { events: vec![], ..ours }, TraceRecord { events: vec![], ..found });
     }

@@ -1,6 +1,7 @@
 //! Drawings as their own programs show them: files in which something was lost, bent or let through.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::DVec2;
 use tautline::engine::{Engine, Job, Reference};
@@ -104,10 +105,10 @@ fn filled_boxes_and_wide_lines() {
 
 /// How long the rope is in the end.
 fn rope(scene: &Scene, anchor: [f64; 2], points: &[[f64; 2]]) -> f64 {
-    let model = Model::new(scene.clone(), Some(anchor.into())).unwrap();
+    let model = Arc::new(Model::new(scene.clone(), Some(anchor.into())).unwrap());
     let settled = settle(&model, &Trace { id: 0, points: points.iter().copied().map(DVec2::from).collect() });
     assert_eq!(settled.violation(), None);
-    let records = Reference::new(&model).evaluate(&[settled], &Job::new()).unwrap();
+    let records = Reference::new(model).evaluate(&[settled], &Job::new()).unwrap();
     records[0].length
 }
 

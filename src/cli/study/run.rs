@@ -150,7 +150,7 @@ pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
 fn proceed(
     session: Arc<Session>,
     guard: &Guard,
-    Engines { mut engines, on }: Engines<'_>,
+    Engines { mut engines, on }: Engines,
     as_json: bool,
 ) -> Result<(), Failure> {
     // Once a state is there, the study can be gone on with, whenever it is stopped.
@@ -184,26 +184,26 @@ fn stopped(session: &Session) -> Failure {
 }
 
 /// The engines, one for each anchor, and in words what they run on.
-struct Engines<'s> {
-    engines: Vec<Box<dyn Engine + 's>>,
+struct Engines {
+    engines: Vec<Box<dyn Engine>>,
     on: String,
 }
 
-impl<'s> Engines<'s> {
+impl Engines {
     /// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on purpose, and
     /// `funnel` knows no contacts passed straight.
-    fn open(args: &EngineArgs, study: &'s Study) -> Result<Self, Failure> {
+    fn open(args: &EngineArgs, study: &Study) -> Result<Self, Failure> {
         let mut all = Engines { engines: Vec::new(), on: String::new() };
         for model in study.models() {
-            let (engine, on) = args.open_for(study.plan().run.precision, model)?;
-            if ["note", "funnel"].contains(&engine.name()) {
+            let opened = args.open_for(study.plan().run.precision, model)?;
+            if !opened.kind.counts_events() {
                 return Err(Failure::input(anyhow!(
                     "--engine: {} does not count the same events as the other engines; give one of those for a study",
-                    engine.name()
+                    opened.kind.name
                 )));
             }
-            all.engines.push(engine);
-            all.on = on;
+            all.engines.push(opened.engine);
+            all.on = opened.on.to_string();
         }
         Ok(all)
     }

@@ -20,7 +20,7 @@ use crate::trace::Violation;
 
 pub use agreement::Disagreement;
 pub use contender::{CONTENDERS, Contender, Gear};
-pub(super) use contender::{CPU, FAST, FUNNEL, FUNNEL_FINAL, GPU, NOTE, NOTE_FURTHEST, Promise, REFERENCE};
+pub(super) use contender::{CPU, FAST, FUNNEL, FUNNEL_FINAL, GPU, NOTE, NOTE_FURTHEST, REFERENCE};
 pub(super) use measure::order;
 pub use measure::{Measured, Plan, Progress, Row, Skipped, measure};
 pub use setting::{BenchScene, Setting, Sweep, SweepError, Work};

@@ -165,7 +165,7 @@ pub fn tradeoff(
                 continue;
             }
             Ok(false) => "there is no GPU".to_owned(),
-            Err(EngineError::Unfit { why, .. }) => why,
+            Err(EngineError::Unfit { why, .. }) => why.to_string(),
             Err(other) => return Err(other.into()),
         };
         failed.push(lane.failed(why));
@@ -256,7 +256,7 @@ impl<'v> Lane<'v> {
     /// Evaluates the sample once, on an engine that is made and warmed up before the clock starts.
     fn run(&self, gear: &Gear) -> Result<Option<Run>, EngineError> {
         let traces = self.sample();
-        let Some(mut engine) = self.method.open(&self.variant.model, gear)? else { return Ok(None) };
+        let Some(mut engine) = self.method.open(self.variant.model.clone(), gear)? else { return Ok(None) };
         if self.method.takes_many() {
             engine.evaluate(&traces[..FIRST.min(traces.len())], &Job::new())?;
         }
@@ -300,7 +300,7 @@ impl<'v> Lane<'v> {
         let (score, has_events) = (self.score.as_ref()?, self.method.has_events());
         Some(Point {
             method: self.method.name,
-            engine: self.method.engine(),
+            engine: self.method.engine().name,
             setting: self.variant.setting,
             n: self.variant.model.vertices().len(),
             traces: self.traces,

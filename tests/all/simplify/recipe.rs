@@ -1,5 +1,7 @@
 //! Random scenes, their anchors and a trace in each.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use proptest::prelude::*;
 use tautline::scene::{Model, Scene};
@@ -85,13 +87,13 @@ impl Recipe {
         self.lines.iter().enumerate().flat_map(line).collect()
     }
 
-    pub(super) fn model(&self) -> Option<Model> {
+    pub(super) fn model(&self) -> Option<Arc<Model>> {
         let scene = Scene::new(self.walls()).unwrap();
         let anchor = match self.anchor {
             (at, true) => *scene.vertices().get(usize::from(at[0]))?,
             (at, false) => spot(at),
         };
-        Model::new(scene, Some(anchor)).ok()
+        Some(Arc::new(Model::new(scene, Some(anchor)).ok()?))
     }
 
     /// The model's anchor, and others.
