@@ -41,7 +41,7 @@ fn cpu(bencher: Bencher<'_, '_>) {
     let (list, simd, mut found) = (lists.all(), Simd::detected(), Vec::new());
     bencher.counter(ItemsCount::new(queries.len())).bench_local(|| {
         found.clear();
-        queries.iter().for_each(|query| list.sweep(simd, query, list.len(), &mut found));
+        queries.iter().for_each(|query| simd.sweep(list, query, list.len(), &mut found));
         found.len()
     });
 }

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::simd::{Simd, VERTICES};
-use super::{Frame, Query};
+use super::Frame;
+use super::places::{Places, VERTICES};
 use crate::scene::Model;
 
 /// How many vertices share a distance, that of the nearest: few, so that a query tries few too many; several, so that
@@ -22,15 +22,6 @@ pub struct List {
     nearest: Option<Box<[u32]>>,
     /// The last is filled up with NaN, which lies in no triangle.
     pub(super) places: Box<[Places]>,
-}
-
-/// Coordinates of [`VERTICES`] vertices in the frame, and their numbers.
-#[derive(Debug, Clone)]
-#[repr(align(64))]
-pub(super) struct Places {
-    pub x: [f32; VERTICES],
-    pub y: [f32; VERTICES],
-    pub numbers: [u32; VERTICES],
 }
 
 impl List {
@@ -127,13 +118,6 @@ impl List {
     /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + size_of_val(self.nearest.as_deref().unwrap_or_default()) + size_of_val(&*self.places)
-    }
-
-    /// Adds the numbers of the vertices inside the triangle of `query`, of the first `count` or a few more, to `found`. The
-    /// twin of `shaders/sweep.wgsl`.
-    #[inline]
-    pub fn sweep(&self, simd: Simd, query: &Query, count: usize, found: &mut Vec<u32>) {
-        simd.sweep(self, query, count, found);
     }
 }
 

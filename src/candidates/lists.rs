@@ -279,7 +279,7 @@ impl<'m> Lists<'m> {
         }
         found.clear();
         let remaining = self.remaining();
-        remaining.sweep(simd, query, remaining.len(), found);
+        simd.sweep(remaining, query, remaining.len(), found);
         remaining.len()
     }
 

@@ -6,8 +6,10 @@
 mod frame;
 mod list;
 mod lists;
+mod places;
 mod query;
 mod simd;
+mod slopes;
 mod window;
 
 use bytemuck::{Pod, Zeroable};
@@ -16,8 +18,9 @@ pub use frame::Frame;
 pub use list::List;
 pub use lists::{LISTS_BUDGET, Lists};
 pub use query::{ARITHMETIC, LONGEST_NORMAL, MARGIN, Query};
-pub use simd::{LEGS, Simd};
-pub use window::{Line, Slopes, Window, Wrapping};
+pub use simd::Simd;
+pub use slopes::{LEGS, Line, Slopes, Wrapping};
+pub use window::Window;
 
 /// How many vertices a query can name before it overflows.
 ///

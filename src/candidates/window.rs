@@ -6,8 +6,8 @@
 
 use glam::DVec2;
 
-use super::simd::{BLOCK, Extent, Simd};
-use super::{Frame, Query};
+use super::slopes::{BLOCK, Extent, Line, Slopes};
+use super::{Frame, Query, Simd};
 
 /// The largest slope in a window: beyond it (56 degrees from the axis) the next window begins. The wedge stays well below
 /// a half turn.
@@ -25,22 +25,6 @@ const SURELY: f64 = 1.0 / (1u64 << 45) as f64;
 
 /// Lines of a greater slope do not pass through the window.
 const FLAT: f64 = 4.0;
-
-/// The slopes of a window's points and the squares of their distances from the pivot, in the scene's unit; entry i is point
-/// i of the window. Kept from window to window for its memory.
-#[derive(Debug, Default)]
-pub struct Slopes {
-    pub(super) slope: Vec<f64>,
-    pub(super) squared: Vec<f64>,
-}
-
-impl Slopes {
-    /// The square of the greatest distance from the pivot of points `from` to `to`.
-    #[inline]
-    pub fn farthest(&self, simd: Simd, from: usize, to: usize) -> f64 {
-        simd.greatest(&self.squared[from..=to])
-    }
-}
 
 /// A window of legs about one pivot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +47,7 @@ impl Window {
     /// is not at the first point, but somewhere on the first leg.
     ///
     /// Fills `slopes` for the points of the window; that of the first means nothing if there is a `start`.
-    /// O(legs), 8 points at a time.
+    /// O(legs), 4 points at a time.
     pub fn fold(
         simd: Simd,
         pivot: DVec2,
@@ -110,42 +94,5 @@ impl Window {
         // Not a number, for a way of no length, is kept: no slope is then certain.
         let passes_by = slope.abs() > FLAT || slope > self.high + CERTAIN || slope < self.low - CERTAIN;
         (!passes_by).then_some(Line { low: slope - CERTAIN, high: slope + CERTAIN, beyond })
-    }
-}
-
-/// A line through the pivot that the free end must cross for something to happen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Line {
-    /// Between which bounds its slope surely lies.
-    pub(super) low: f64,
-    pub(super) high: f64,
-    /// Nothing happens on legs whose ends are both nearer to the pivot, squared.
-    pub(super) beyond: f64,
-}
-
-/// A line and the legs on which something can happen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wrapping {
-    /// The vertex round which the rope can be wrapped; for the unwrapping ray, the pivot.
-    pub vertex: u32,
-    /// The line that the free end must cross.
-    pub line: Line,
-    /// The legs, of the [`LEGS`](super::LEGS) from some leg on, on which something can happen, as bits, lowest first.
-    pub met: u64,
-}
-
-impl Wrapping {
-    /// A line of which it is not known yet where it can be met.
-    #[inline]
-    pub fn new(vertex: u32, line: Line) -> Self {
-        Wrapping { vertex, line, met: 0 }
-    }
-
-    /// Finds the legs, of the `legs` from `leg` on but at most [`LEGS`](super::LEGS), on which something can happen: all but
-    /// those of which it is certain that both ends lie strictly on one side of the line, or that both are nearer than its
-    /// vertex. On a first leg that starts on its way, the part before is left out. Bits of further legs mean nothing.
-    #[inline]
-    pub fn meet(simd: Simd, lines: &mut [Wrapping], slopes: &Slopes, leg: usize, legs: usize) {
-        simd.meet(lines, slopes, leg, legs);
     }
 }

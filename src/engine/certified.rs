@@ -74,7 +74,7 @@ impl Player for Course {
             // Too many for one leg.
             None => {
                 let mut candidates = Vec::new();
-                list.sweep(simd, query, query.count as usize, &mut candidates);
+                simd.sweep(list, query, query.count as usize, &mut candidates);
                 self.recall(trace, simd, slopes);
                 self.go_on(model, trace, &candidates, simd, slopes);
             }

@@ -118,7 +118,7 @@ impl Course {
         let mut looked = 0;
         for from in (0..window.legs).step_by(LEGS) {
             let legs = LEGS.min(window.legs - from);
-            Wrapping::meet(simd, &mut self.lines, slopes, from, legs);
+            simd.meet(&mut self.lines, slopes, from, legs);
             let mut met = self.lines.iter().fold(u64::from(turned && from == 0), |met, line| met | line.met);
             met &= (1 << legs) - 1;
             while met != 0 {
@@ -126,7 +126,7 @@ impl Course {
                 let leg = from + bit.trailing_zeros() as usize;
                 met ^= bit;
                 if leg > looked {
-                    self.walk.skip(trace, self.first + leg, || slopes.farthest(simd, looked + 1, leg));
+                    self.walk.skip(trace, self.first + leg, || simd.farthest(slopes, looked + 1, leg));
                 }
                 let tried =
                     self.lines[self.unwrappings..].iter().filter(|line| line.met & bit != 0 || turned && leg == 0);
@@ -138,7 +138,7 @@ impl Course {
             }
         }
         if window.legs > looked {
-            self.walk.skip(trace, self.first + window.legs, || slopes.farthest(simd, looked + 1, window.legs));
+            self.walk.skip(trace, self.first + window.legs, || simd.farthest(slopes, looked + 1, window.legs));
         }
         self.adapt(&window, candidates.len());
     }

@@ -147,7 +147,7 @@ impl Lane<'_, '_> {
             tests += job.time(Phase::Kernel, || match list.as_ref().filter(serves) {
                 Some((_, list)) => {
                     let count = list.within(squared);
-                    list.sweep(*simd, &query, count, &mut self.found);
+                    simd.sweep(list, &query, count, &mut self.found);
                     count
                 }
                 None => lists.look_into(pivot, &query, *simd, &mut self.scratch, &mut self.found),

@@ -73,9 +73,12 @@ mod tests {
 
     use naga::{Module, TypeInner};
 
-    use super::super::arithmetic::{Outcome, PROBE_WGSL, Sample};
-    use super::super::pages::{PAGE_BYTES, PAGE_VERTICES};
+    use super::super::arithmetic::Outcome;
+    use super::super::buffers::PAGE_BYTES;
+    use super::super::pages::PAGE_VERTICES;
     use super::super::pass::Span;
+    use super::super::probe::PROBE_WGSL;
+    use super::super::sample::Sample;
     use super::*;
     use crate::candidates::ROOM;
     use crate::fast::{NOTHING, UNWRAP};

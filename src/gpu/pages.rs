@@ -4,11 +4,8 @@ use std::ops::Range;
 
 use wgpu::BufferUsages;
 
-use super::adapter::Device;
-use super::pass::binding;
-
-/// The size of a page in bytes: what every device can bind as a uniform buffer.
-pub(super) const PAGE_BYTES: u64 = 1 << 16;
+use super::Device;
+use super::buffers::{PAGE_BYTES, binding};
 
 /// The size of a page's header, the first of its places and three unused numbers.
 const HEADER_BYTES: u64 = 16;

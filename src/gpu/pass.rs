@@ -3,11 +3,11 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::mpsc;
-use std::time::Duration;
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BufferUsages, PollType};
 
+use super::buffers::{PATIENCE, binding, buffer};
 use super::kernel::{Kernel, Sweeping};
 use super::pages::{Pages, pages_of};
 use super::{Device, GpuError, Tuning};
@@ -15,9 +15,6 @@ use super::{Device, GpuError, Tuning};
 /// How many tests a round has at most, one a vertex and point, if that leaves work for one workgroup: 2^32, some seconds on the slowest adapter
 /// known (0.7e9 tests a second), well within the patience of drivers that watch for hanging kernels on real GPUs.
 const TESTS_A_ROUND: usize = 1 << 32;
-
-/// How long a round may take before the device is given up.
-pub(super) const PATIENCE: Duration = Duration::from_secs(120);
 
 /// How far apart the spans lie in their buffer: every device can bind a uniform buffer at multiples of 256 bytes.
 const SPAN_BYTES: u64 = 256;
@@ -293,24 +290,6 @@ fn bind_spans(
     let descriptor = wgpu::BindGroupDescriptor { label: Some("round"), layout, entries: &entries };
     let bindings = device.create_bind_group(&descriptor);
     (spans, bindings)
-}
-
-pub(super) fn buffer(device: &wgpu::Device, label: &str, size: usize, usage: BufferUsages) -> wgpu::Buffer {
-    let size = size as u64;
-    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
-}
-
-pub(super) fn binding(
-    binding: u32,
-    ty: wgpu::BufferBindingType,
-    has_dynamic_offset: bool,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None },
-        count: None,
-    }
 }
 
 /// The most that a query takes of any of the round's buffers, in bytes.

@@ -1,6 +1,6 @@
 //! What is chosen by the adapter: how many queries a round carries and how many lanes a workgroup has.
 
-use super::AdapterKind;
+use super::adapter::AdapterKind;
 
 /// Choices that make one adapter fast and change no result.
 ///

@@ -172,7 +172,7 @@ fn overflowing_queries_are_evaluated_exactly() {
     let lists = Lists::new(&model);
     let (simd, mut found) = (Simd::detected(), vec![]);
     let query = Query::leg(lists.frame(), model.anchor(), points[1], points[2]);
-    lists.all().sweep(simd, &query, 60 * 2, &mut found);
+    simd.sweep(lists.all(), &query, 60 * 2, &mut found);
     assert!(found.len() > ROOM, "no overflow: {found:?}");
     // The first leg, from the anchor to the ring, is clear: it goes below all walls.
     let traces = settled(&model, &[Trace { id: 0, points }]);

@@ -10,7 +10,7 @@ mod source;
 use std::fmt;
 use std::ops::{Add, Mul, Sub};
 
-use super::arithmetic::Sample;
+use super::sample::Sample;
 
 /// The shapes for which the probe asks, in its order, each as the kernels write it: the same letter is the same number.
 pub(super) const SHAPES: [&str; 18] = [

@@ -100,7 +100,7 @@ fn of_walk(lists: &Lists<'_>, trace: &SettledTrace, record: &TraceRecord) -> Fil
         let (legs, query) = asked_of(lists, at_pivot, asked, &mut slopes);
         let list = lists.of(pivots[at], f64::INFINITY).expect("lists are made at once");
         let mut named = Vec::new();
-        list.sweep(Simd::detected(), &query, list.len(), &mut named);
+        Simd::detected().sweep(&list, &query, list.len(), &mut named);
         filter.count(list.numbers().map(|v| {
             let p = model.vertices()[v as usize];
             let is_inside = (0..legs).any(|leg| holds([at_pivot, asked[leg], asked[leg + 1]], p));

@@ -65,7 +65,7 @@ impl Trial {
         let (mut filter, mut named) = (Filter::default(), Vec::new());
         for Asked { query, list, truths } in &self.asked {
             named.clear();
-            list.sweep(simd, query, list.len(), &mut named);
+            simd.sweep(list, query, list.len(), &mut named);
             filter.count(truths.iter().copied().zip(list.numbers().map(|v| named.contains(&v))));
         }
         filter
