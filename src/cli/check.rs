@@ -14,8 +14,8 @@ use super::batches::Batches;
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::look::{Look, Target, save};
-use super::summary::{counted, dropped, place};
 use super::trade::Terms;
+use super::words::{counted, dropped, place};
 use super::{print, print_json};
 
 /// How many traces are checked at a time.

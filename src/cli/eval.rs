@@ -15,8 +15,9 @@ use super::failure::Failure;
 use super::input::InputArgs;
 use super::output::Output;
 use super::progress::{Progress, with_progress};
-use super::summary::{Summary, Times, dropped};
+use super::summary::{Summary, Times};
 use super::trade::TradeArgs;
+use super::words::dropped;
 use super::{print, print_json};
 
 #[derive(Debug, clap::Args)]

@@ -11,8 +11,8 @@ use tautline::study::Traded;
 use tautline::trace::{SettledTrace, Trace, settle_owned};
 
 use super::failure::Failure;
-use super::input::above_zero;
-use super::summary::{counted, grouped};
+use super::parse::{above_zero, stride};
+use super::words::{counted, grouped};
 
 /// What accuracy is given for speed.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -82,12 +82,6 @@ pub(crate) fn notes(stride: u32, simplify: Option<f64>) -> Vec<(&'static str, St
     let stride = (stride > 1).then(|| ("tautline.stride", stride.to_string()));
     let simplify = simplify.map(|tolerance| ("tautline.simplify", number(tolerance)));
     stride.into_iter().chain(simplify).collect()
-}
-
-/// A stride: of so many points one is used.
-pub(crate) fn stride(text: &str) -> Result<u32, String> {
-    let number = text.trim().parse().ok().filter(|&k| k > 0);
-    number.ok_or_else(|| format!("give a whole number from 1 to {}, such as 4", u32::MAX))
 }
 
 /// What was traded and what that came to, in a line.

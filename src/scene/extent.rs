@@ -82,7 +82,7 @@ fn highest(points: Vec<f64>, mut best: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::curves::Outlines;
+    use crate::scene::outlines::Outlines;
 
     fn p(x: f64, y: f64) -> DVec2 {
         DVec2::new(x, y)

@@ -15,6 +15,8 @@ mod lines;
 mod model;
 mod movingai;
 mod object;
+mod options;
+mod outlines;
 mod pen;
 mod read;
 mod ros_map;
@@ -33,7 +35,8 @@ pub use model::{AnchorError, Model};
 pub use movingai::GridMap;
 pub(crate) use object::MEMBER;
 pub use object::{Inside, Object, Wall};
-pub use read::{Ros, SceneOptions, Unknown, read_scene, read_scene_with};
+pub use options::{Ros, SceneOptions, Unknown};
+pub use read::{read_scene, read_scene_with};
 pub(crate) use sectors::{Sectors, by_angle};
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.

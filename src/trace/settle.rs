@@ -10,7 +10,7 @@ use std::ops::ControlFlow::Continue;
 use glam::DVec2;
 
 use super::pluck::pluck;
-use super::settled::Broken;
+use super::settled::{Broken, violation};
 use super::{SettledTrace, Trace, Violation, ViolationKind};
 use crate::geometry::{between, check_points, higher, lower, opposite, orient, same_side};
 use crate::scene::Model;
@@ -179,17 +179,4 @@ impl Layout {
         }
         settled
     }
-}
-
-/// The violation of a step from `from` to `to`.
-pub(super) fn violation(
-    model: &Model,
-    trace: u64,
-    step: usize,
-    kind: ViolationKind,
-    wall: u32,
-    [from, to]: [DVec2; 2],
-) -> Violation {
-    let wall = wall as usize;
-    Violation { trace, step, kind, wall, ends: model.scene().ends(wall), from, to }
 }

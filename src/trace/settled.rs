@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use crate::geometry::{Hair, Shown, TracePoint, higher, lower};
+use crate::scene::Model;
 
 /// What a trace does that a rope among solid walls cannot follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -271,4 +272,17 @@ impl SettledTrace {
     pub fn violations(&self) -> usize {
         self.broken.steps.len()
     }
+}
+
+/// The violation of a step from `from` to `to`.
+pub(super) fn violation(
+    model: &Model,
+    trace: u64,
+    step: usize,
+    kind: ViolationKind,
+    wall: u32,
+    [from, to]: [DVec2; 2],
+) -> Violation {
+    let wall = wall as usize;
+    Violation { trace, step, kind, wall, ends: model.scene().ends(wall), from, to }
 }

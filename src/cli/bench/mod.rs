@@ -14,7 +14,8 @@ use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured,
 
 use super::engine::{named, notes};
 use super::failure::Failure;
-use super::input::{FileArgs, point};
+use super::input::FileArgs;
+use super::parse::point;
 use super::progress::Runs;
 use super::{named_scene, print, print_json};
 

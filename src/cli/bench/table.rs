@@ -4,7 +4,7 @@ use tautline::engine::Phase;
 use tautline::report::bench::{Plan, Row, Setting, Sweep};
 use tautline::report::{Environment, Spread};
 
-use super::super::summary::{counted, grouped, short};
+use super::super::words::{counted, grouped, short};
 
 /// What stands where there is no number.
 const NONE: &str = "-";

@@ -9,8 +9,8 @@ use tautline::study::{AtWalls, Estimate, Stopped, Summary, quantity};
 use super::folder::{BaseArgs, Folder, SUMMARY};
 use super::run::pretty;
 use crate::cli::failure::Failure;
-use crate::cli::summary::{grouped, short};
 use crate::cli::trade;
+use crate::cli::words::{grouped, short};
 use crate::cli::{print, print_json};
 
 #[derive(Debug, clap::Args)]

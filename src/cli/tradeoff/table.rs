@@ -4,7 +4,7 @@ use tautline::report::Environment;
 use tautline::report::tradeoff::{Answer, Failed, Point, Tradeoff};
 
 use crate::cli::bench::table::{aligned, range};
-use crate::cli::summary::{counted, grouped, short};
+use crate::cli::words::{counted, grouped, short};
 
 /// What stands where there is no number.
 const NONE: &str = "-";

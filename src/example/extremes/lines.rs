@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use super::tools::{around, case, model, nudged, p, way};
 
 /// How many steps there are from 1 to 2^40 units in the last place.

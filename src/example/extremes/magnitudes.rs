@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use super::rays::lattice;
 use super::tools::{model, p, walls_of};
 use crate::example::{Walker, random_walls, walks};

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use super::tools::{case, model, p, way};
 use crate::example::draws::Draws;
 

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use crate::scene::{Model, Scene};
 use crate::trace::{Trace, first_violation};
 

@@ -5,9 +5,10 @@ use std::fmt::Write;
 
 use glam::DVec2;
 
-use super::canvas::{Canvas, DASHES, turn_mark};
+use super::canvas::Canvas;
 use super::film::{Film, most_contacts};
 use super::key::{Entry, Key};
+use super::marks::{DASHES, turn_mark};
 use super::still::Plot;
 use super::theme::Tone;
 use super::trace::TraceStyle;

@@ -5,6 +5,7 @@ mod canvas;
 mod error;
 mod film;
 mod key;
+mod marks;
 mod page;
 mod rays;
 mod rope;

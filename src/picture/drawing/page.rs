@@ -6,9 +6,10 @@ use glam::DVec2;
 use serde_json::{Value, json};
 
 use super::animation::near;
-use super::canvas::{Canvas, DASHES};
+use super::canvas::Canvas;
 use super::film::{Film, most_contacts};
 use super::key::{Entry, Key};
+use super::marks::DASHES;
 use super::rope::{RopeStyle, Shape};
 use super::still::Plot;
 use super::theme::{Theme, Tone};

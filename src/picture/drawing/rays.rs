@@ -2,10 +2,10 @@
 
 use glam::DVec2;
 
-use super::canvas::{Canvas, DOTS, RAY_DASHES};
+use super::canvas::{Canvas, distance};
 use super::key::Entry;
+use super::marks::{DOTS, RAY_DASHES};
 use super::theme::Tone;
-use super::trace::distance;
 use crate::picture::ropes::towards;
 use crate::rope::Moment;
 use crate::scene::Model;

@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 
-use super::canvas::{Canvas, DASHES, straight_mark, turn_mark};
+use super::canvas::{Canvas, distance};
 use super::key::Entry;
+use super::marks::{DASHES, straight_mark, turn_mark};
 use super::theme::Tone;
-use super::trace::distance;
 use crate::picture::label::width;
 use crate::picture::ropes::{beside, towards};
 use crate::picture::svg::Align;

@@ -2,8 +2,9 @@
 
 use glam::DVec2;
 
-use super::canvas::{Canvas, point_mark};
+use super::canvas::{Canvas, distance};
 use super::key::Entry;
+use super::marks::point_mark;
 use super::theme::Tone;
 
 /// Circles lie at least that many pixels apart along the trace, on the mean.
@@ -97,10 +98,6 @@ fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         }
         least *= 2.0;
     }
-}
-
-pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 #[cfg(test)]

@@ -2,7 +2,14 @@
 
 use super::Situation;
 
-pub(super) const ALL: &[Situation] = &[
+impl Situation {
+    /// All of them, from the plain to the strange.
+    pub fn all() -> &'static [Situation] {
+        ALL
+    }
+}
+
+const ALL: &[Situation] = &[
     Situation {
         name: "wrap",
         title: "Wrap",

@@ -10,34 +10,15 @@
 
 mod agreement;
 mod contender;
+mod error;
 mod measure;
 mod runner;
 mod setting;
 
-use crate::engine::EngineError;
-use crate::scene::AnchorError;
-use crate::trace::Violation;
-
 pub use agreement::Disagreement;
 pub use contender::{CONTENDERS, Contender, Gear};
 pub(super) use contender::{CPU, FAST, FUNNEL, FUNNEL_FINAL, GPU, NOTE, NOTE_FURTHEST, Promise, REFERENCE};
+pub use error::BenchError;
 pub(super) use measure::order;
 pub use measure::{Measured, Plan, Progress, Row, Skipped, measure};
 pub use setting::{BenchScene, Setting, Sweep, SweepError, Work};
-
-/// Why a bench reports nothing.
-#[derive(Debug, thiserror::Error)]
-pub enum BenchError {
-    /// An engine failed.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// Two engines gave different results.
-    #[error(transparent)]
-    Disagreement(#[from] Disagreement),
-    /// The rope cannot be tied.
-    #[error(transparent)]
-    Anchor(#[from] AnchorError),
-    /// A walk crosses a wall, which none should.
-    #[error(transparent)]
-    Violation(#[from] Violation),
-}

@@ -12,7 +12,7 @@ use std::rc::Rc;
 
 use glam::{DAffine2, DVec2};
 
-use super::curves::Outlines;
+use super::outlines::Outlines;
 use super::{Inside, Object, Scene, excerpt, listed, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};

@@ -2,7 +2,7 @@
 
 use super::super::Ros;
 use super::super::image::Pixel;
-use super::{Map, Mode};
+use super::map::{Map, Mode};
 
 /// What a cell is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,9 @@
 //! What drawings look like to their own programs: paint, styles, viewports, and names.
 
 use super::super::{Inside, Scene};
+use super::namespaces::{INKSCAPE, SVG};
+use super::parse;
 use super::tests::{scene, walls};
-use super::{INKSCAPE, SVG, parse};
 
 /// What is said of `inside`, without what is said of every drawing.
 fn notes(inside: &str) -> Vec<String> {

@@ -8,10 +8,12 @@ mod bounds;
 mod css_transform;
 mod label;
 mod length;
+mod namespaces;
 mod notes;
 mod page;
 mod paint;
 mod path;
+mod properties;
 mod shapes;
 mod sheet;
 mod style;
@@ -23,19 +25,16 @@ use std::collections::HashMap;
 use glam::{DAffine2, DVec2};
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::curves::Outlines;
+use super::outlines::Outlines;
 use super::{Object, Scene, excerpt, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
+use namespaces::{INKSCAPE, SVG};
 use notes::Counts;
 use page::viewport_of;
 use paint::Paint;
 use shapes::{SHAPES, Shape};
 use style::{Style, Styles};
-
-const SVG: &str = "http://www.w3.org/2000/svg";
-const XLINK: &str = "http://www.w3.org/1999/xlink";
-const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
 /// How deep elements may lie in each other, those that they use included.
 const DEPTH_MAX: usize = 128;

@@ -174,7 +174,7 @@ mod tests {
     use roxmltree::Document;
 
     use super::super::super::Wall;
-    use super::super::super::curves::Outlines;
+    use super::super::super::outlines::Outlines;
     use super::super::style::Styles;
     use super::*;
 

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use simplecss::Selector;
 
 use super::super::excerpt;
-use super::style::property;
+use super::properties::property;
 
 /// A rule for the elements that its selector matches.
 pub(super) struct Rule<'a> {

@@ -6,51 +6,9 @@ use std::rc::Rc;
 use roxmltree::{Document, Node};
 use simplecss::{AttributeOperator, Element, PseudoClass};
 
-use super::SVG;
+use super::namespaces::SVG;
+use super::properties::PROPERTIES;
 use super::sheet::{self, Rule, Unread};
-
-/// The properties that matter, and whether an attribute of the same name says the same.
-const PROPERTIES: [(&str, bool); 34] = [
-    ("clip-path", true),
-    ("cx", true),
-    ("cy", true),
-    ("d", true),
-    ("display", true),
-    ("fill", true),
-    ("fill-opacity", true),
-    ("fill-rule", true),
-    ("height", true),
-    ("marker", false),
-    ("marker-end", true),
-    ("marker-mid", true),
-    ("marker-start", true),
-    ("mask", true),
-    ("offset", false),
-    ("offset-path", false),
-    ("opacity", true),
-    ("overflow", true),
-    ("r", true),
-    ("rotate", false),
-    ("rx", true),
-    ("ry", true),
-    ("scale", false),
-    ("stroke", true),
-    ("stroke-opacity", true),
-    ("stroke-width", true),
-    ("transform", true),
-    ("transform-box", true),
-    ("transform-origin", true),
-    ("translate", false),
-    ("visibility", true),
-    ("width", true),
-    ("x", true),
-    ("y", true),
-];
-
-/// The property of this name, in any case, if it matters.
-pub(super) fn property(name: &str) -> Option<&'static str> {
-    PROPERTIES.iter().map(|p| p.0).find(|p| p.eq_ignore_ascii_case(name))
-}
 
 /// What a property is to be, and whether a style says so or an attribute: they are written differently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -59,8 +59,10 @@ impl House {
     fn imports_of(&self, module: &Module) -> BTreeMap<Module, BTreeSet<String>> {
         let file = &self.files[module];
         let mut found: BTreeMap<Module, BTreeSet<String>> = BTreeMap::new();
+        // A module alone says nothing: what is taken from it stands where it is used.
         let mut take = |path: &[String]| {
             if let Some(whole) = self.whole(module, path)
+                && !self.files.contains_key(&whole)
                 && let Some(from) = self.origin(&whole)
                 && from != *module
             {
@@ -68,9 +70,8 @@ impl House {
             }
         };
         for Use { path, name, is_public } in &file.uses {
-            let is_module = self.whole(module, path).is_some_and(|whole| self.files.contains_key(&whole));
-            // What is only passed on is no import of its own, and what is taken from a module stands where it is used.
-            if !is_module && (!is_public || file.body.contains(name)) {
+            // What is only passed on is no import of its own.
+            if !is_public || file.body.contains(name) {
                 take(path);
             }
         }
