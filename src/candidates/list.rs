@@ -17,16 +17,16 @@ pub struct List {
     len: usize,
     /// The square of the distance from the pivot beyond which vertices may be missing.
     reach: f64,
-    /// The square of the distance from the pivot of the first vertex of each group, as its [`key`]; `None` where the list is
-    /// for any pivot.
+    /// The square of the distance from the pivot of the first vertex of each group, as its [`key`]; `None` where the
+    /// list is for any pivot.
     nearest: Option<Box<[u32]>>,
     /// The last is filled up with NaN, which lies in no triangle.
     pub(super) places: Box<[Places]>,
 }
 
 impl List {
-    /// The vertices of these numbers, for queries about `pivot` whose points are no further from it than the square root of
-    /// `reach`. O(vertices log vertices).
+    /// The vertices of these numbers, for queries about `pivot` whose points are no further from it than the square
+    /// root of `reach`. O(vertices log vertices).
     pub fn about(model: &Model, frame: &Frame, pivot: DVec2, reach: f64, numbers: &[u32]) -> Self {
         let keyed = |&v: &u32| {
             let squared = model.vertices()[v as usize].distance_squared(pivot);
@@ -61,8 +61,8 @@ impl List {
         List { len, reach, nearest, places: places.into() }
     }
 
-    /// Whether it serves queries whose points are all no further from the pivot than the square root of `squared`, in the
-    /// scene's unit; infinity for all there are.
+    /// Whether it serves queries whose points are all no further from the pivot than the square root of `squared`, in
+    /// the scene's unit; infinity for all there are.
     #[inline]
     pub fn reaches(&self, squared: f64) -> bool {
         squared <= self.reach

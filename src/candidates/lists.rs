@@ -13,17 +13,18 @@ use crate::visibility::{Scratch, Visibility};
 /// How much memory the lists may take unless told otherwise: 256 MiB, enough for some 200,000 pivots.
 pub const LISTS_BUDGET: usize = 256 << 20;
 
-/// After how many queries a pivot gets a list unless told otherwise. Making one costs as much as some 30 looks that go no
-/// further than their queries (about 15 us and 0.5 us at 1,000 vertices), and most pivots that are asked about 8 times are
-/// asked about many times more.
+/// After how many queries a pivot gets a list unless told otherwise. Making one costs as much as some 30 looks that go
+/// no further than their queries (about 15 us and 0.5 us at 1,000 vertices), and most pivots that are asked about 8
+/// times are asked about many times more.
 const WORTH_A_LIST: u32 = 8;
 
-/// How many triangles a look for one query may take before it gives up and all that remain are tried, in scenes where that is
-/// more than a 64th of the vertices: one triangle takes as long as some 150 vertices.
+/// How many triangles a look for one query may take before it gives up and all that remain are tried, in scenes where
+/// that is more than a 64th of the vertices: one triangle takes as long as some 150 vertices.
 const TRIANGLES_A_LOOK: usize = 64;
 
-/// How many triangles the making of a list may look at, in scenes where that is more than a quarter of the vertices: several
-/// times as many as pivots see through where walls hide most of the scene. Pivots that see more try all that remain.
+/// How many triangles the making of a list may look at, in scenes where that is more than a quarter of the vertices:
+/// several times as many as pivots see through where walls hide most of the scene. Pivots that see more try all that
+/// remain.
 const TRIANGLES_A_LIST: usize = 1 << 12;
 
 /// The square of how much further a pivot's first list reaches than the queries before.
@@ -107,8 +108,8 @@ impl<'m> Lists<'m> {
         self
     }
 
-    /// With looks, and the making of lists, given up after that many triangles: then [`remaining`](Self::remaining) vertices are
-    /// tried.
+    /// With looks, and the making of lists, given up after that many triangles: then [`remaining`](Self::remaining)
+    /// vertices are tried.
     #[must_use]
     pub fn at_most(mut self, triangles: usize) -> Self {
         self.most = Some(triangles);
@@ -176,8 +177,8 @@ impl<'m> Lists<'m> {
         self.all.get_or_init(|| Arc::new(List::of_any(self.model, &self.frame, all)))
     }
 
-    /// The list of all vertices at which a rope can turn whose free end keeps to the rules and goes no further than these
-    /// lists were told: that of [`all`](Self::all) where [`keeps_all`](Self::keeps_all). See
+    /// The list of all vertices at which a rope can turn whose free end keeps to the rules and goes no further than
+    /// these lists were told: that of [`all`](Self::all) where [`keeps_all`](Self::keeps_all). See
     /// [`Visibility::only_required`].
     pub fn remaining(&self) -> &Arc<List> {
         self.remaining.get_or_init(|| {
@@ -190,8 +191,8 @@ impl<'m> Lists<'m> {
         })
     }
 
-    /// How many vertices [`remaining`](Self::remaining) has; `None` before anything was asked that takes knowing which. Makes
-    /// nothing.
+    /// How many vertices [`remaining`](Self::remaining) has; `None` before anything was asked that takes knowing which.
+    /// Makes nothing.
     pub fn remaining_count(&self) -> Option<usize> {
         let all = self.model.vertices().len();
         match (self.keep_all, self.visibility.get()) {
@@ -201,14 +202,14 @@ impl<'m> Lists<'m> {
         }
     }
 
-    /// Whether every pivot has the list of [`all`](Self::all) vertices: because that was asked for, or because the scene
-    /// cannot be triangulated.
+    /// Whether every pivot has the list of [`all`](Self::all) vertices: because that was asked for, or because the
+    /// scene cannot be triangulated.
     pub fn keeps_all(&self) -> bool {
         self.keep_all || self.visibility().is_none()
     }
 
-    /// A number for `list`, which is that of `pivot`: the pivot, or another for each of the lists for any pivot, whosever it
-    /// is.
+    /// A number for `list`, which is that of `pivot`: the pivot, or another for each of the lists for any pivot,
+    /// whosever it is.
     pub fn key(&self, pivot: u32, list: &Arc<List>) -> u32 {
         let keys = self.keys() as u32;
         match list.is_of_any() {
@@ -223,9 +224,9 @@ impl<'m> Lists<'m> {
         self.entries.len() + 2
     }
 
-    /// The list of `pivot` (a vertex, or the number of vertices for the anchor), for queries whose points are all no further
-    /// from it than the square root of `squared`, in the scene's unit; infinity for any. `None` as long as that is not worth
-    /// making: then [`look_into`](Self::look_into) answers.
+    /// The list of `pivot` (a vertex, or the number of vertices for the anchor), for queries whose points are all no
+    /// further from it than the square root of `squared`, in the scene's unit; infinity for any. `None` as long as that
+    /// is not worth making: then [`look_into`](Self::look_into) answers.
     ///
     /// A pivot's first list goes a little further than its queries so far; the second goes all the way. See
     /// [`Visibility::look`] for what is in it and what making it costs.
@@ -252,8 +253,8 @@ impl<'m> Lists<'m> {
         Some(self.make(pivot, reach))
     }
 
-    /// Adds the candidates of a query about `pivot` to `found`, without a list of its own, and returns how many vertices were
-    /// tried.
+    /// Adds the candidates of a query about `pivot` to `found`, without a list of its own, and returns how many
+    /// vertices were tried.
     ///
     /// Looks through the triangles of the scene's triangulation in which the query lies, or tries all that remain where
     /// that is less.

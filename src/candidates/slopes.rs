@@ -9,8 +9,8 @@ pub(super) const MASK: usize = 64;
 /// How many legs a mask holds: those between its points.
 pub const LEGS: usize = MASK - 1;
 
-/// The slopes of a window's points and the squares of their distances from the pivot, in the scene's unit; entry i is point
-/// i of the window. Kept from window to window for its memory.
+/// The slopes of a window's points and the squares of their distances from the pivot, in the scene's unit; entry i is
+/// point i of the window. Kept from window to window for its memory.
 #[derive(Debug, Default)]
 pub struct Slopes {
     pub(super) slope: Vec<f64>,

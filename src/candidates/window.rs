@@ -1,23 +1,24 @@
 //! Windows: the legs that one query covers, seen from the pivot.
 //!
-//! Everything is measured against an axis, the first direction of the window: a point's *slope* is the tangent of its angle
-//! from the axis. The legs' slopes span the wedge that the rope's last leg sweeps; and the slope of a line through the
-//! pivot tells on which legs the rope can cross it, without any exact test.
+//! Everything is measured against an axis, the first direction of the window: a point's *slope* is the tangent of its
+//! angle from the axis. The legs' slopes span the wedge that the rope's last leg sweeps; and the slope of a line
+//! through the pivot tells on which legs the rope can cross it, without any exact test.
 
 use glam::DVec2;
 
 use super::slopes::{BLOCK, Extent, Line, Slopes};
 use super::{Frame, Query, Simd};
 
-/// The largest slope in a window: beyond it (56 degrees from the axis) the next window begins. The wedge stays well below
-/// a half turn.
+/// The largest slope in a window: beyond it (56 degrees from the axis) the next window begins. The wedge stays well
+/// below a half turn.
 const STEEPEST: f64 = 1.5;
 
 /// By how much two slopes must differ for their order to be certain: 2^-45.
 ///
-/// With u = 2^-53: a way from the pivot is good to u in each coordinate, so its products with the axis (which is taken as it
-/// is, rounded) are good to 4u times both lengths, and the slope s to 4u (1 + |s|) sqrt(1 + s^2) + u |s|. That is 20u for
-/// points of the window, whose slopes are at most [`STEEPEST`], and 90u for lines, whose slopes are at most [`FLAT`].
+/// With u = 2^-53: a way from the pivot is good to u in each coordinate, so its products with the axis (which is taken
+/// as it is, rounded) are good to 4u times both lengths, and the slope s to 4u (1 + |s|) sqrt(1 + s^2) + u |s|. That is
+/// 20u for points of the window, whose slopes are at most [`STEEPEST`], and 90u for lines, whose slopes are at most
+/// [`FLAT`].
 const CERTAIN: f64 = 1.0 / (1u64 << 45) as f64;
 
 /// By what share squared distances must differ for their order to be certain: each is good to 6u, with u = 2^-53.
@@ -42,9 +43,9 @@ pub struct Window {
 }
 
 impl Window {
-    /// The longest window about `pivot` that starts with the first of `points` and whose directions do not spread too far;
-    /// `None` if not even one leg fits. `start` is the direction in which the rope's last leg points at the start if that
-    /// is not at the first point, but somewhere on the first leg.
+    /// The longest window about `pivot` that starts with the first of `points` and whose directions do not spread too
+    /// far; `None` if not even one leg fits. `start` is the direction in which the rope's last leg points at the start
+    /// if that is not at the first point, but somewhere on the first leg.
     ///
     /// Fills `slopes` for the points of the window; that of the first means nothing if there is a `start`.
     /// O(legs), 4 points at a time.
@@ -75,8 +76,8 @@ impl Window {
         Query::wedge(frame, pivot, self.axis, (self.low, self.high), self.squared.sqrt())
     }
 
-    /// The line through the pivot along which the rope turns back, if it can pass through the window; `way` leads to the
-    /// pivot from the prior.
+    /// The line through the pivot along which the rope turns back, if it can pass through the window; `way` leads to
+    /// the pivot from the prior.
     pub fn unwrapping(&self, way: DVec2) -> Option<Line> {
         self.line(way, 0.0)
     }

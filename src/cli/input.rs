@@ -50,8 +50,8 @@ pub(crate) struct FileArgs {
     /// Which ROS's map_server says what cells of a map are occupied: nav2's of ROS 2, or that of ROS 1
     #[arg(long, value_name = "1|2", default_value = "2", value_parser = ros)]
     ros: Ros,
-    /// Take the walls of this layer only; may be given several times. Layers are those of a .dxf, layers and groups of an
-    /// .svg, and of .geojson what the property `layer` says, or as KEY=VALUE what the property KEY does
+    /// Take the walls of this layer only; may be given several times. Layers are those of a .dxf, layers and groups of
+    /// an .svg, and of .geojson what the property `layer` says, or as KEY=VALUE what the property KEY does
     #[arg(long = "layer", value_name = "NAME")]
     layers: Vec<String>,
     /// Leave the walls of this layer out; may be given several times

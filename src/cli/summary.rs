@@ -260,7 +260,8 @@ impl Summary {
                 "name": self.scene, "walls": self.walls, "vertices": self.vertices, "remaining": self.remaining,
                 "dropped": self.dropped, "anchor": self.anchor,
             },
-            "engine": self.engine, "precision": self.precision, "on": self.on, "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
+            "engine": self.engine, "precision": self.precision, "on": self.on,
+            "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
             "traded": self.traded.as_ref().map(|(trade, traded)| json!({
                 "stride": trade.stride.unwrap_or(1), "simplify": trade.simplify,
                 "vertices_left": traded.vertices_left, "jumps": traded.jumps,

@@ -7,9 +7,9 @@ use super::question::{Answer, NOTHING, Question, UNWRAP};
 /// By how much the wedge is grown, in the frame's unit: 2^-18, as that of the candidate pass.
 const MARGIN: f32 = 1.0 / (1 << 18) as f32;
 
-/// The answer to `question`, in f32 as it comes: the first event of the legs between `points`, of which there is one more
-/// than `question.legs`, about the pivot. `vertices` are those to be tried, the one at place `question.first` first. The
-/// device gives the same unless it fuses or reassociates. O(vertices + vertices in the wedge * legs).
+/// The answer to `question`, in f32 as it comes: the first event of the legs between `points`, of which there is one
+/// more than `question.legs`, about the pivot. `vertices` are those to be tried, the one at place `question.first`
+/// first. The device gives the same unless it fuses or reassociates. O(vertices + vertices in the wedge * legs).
 ///
 /// ```
 /// use glam::Vec2;
@@ -115,8 +115,8 @@ fn try_pivot(question: &Question, points: &[Vec2], met: &mut Answer) {
     }
 }
 
-/// Whether the rope turns back across the ray of its pivot on the leg from `a` to `b`. If it was across before, by rounding,
-/// it is enough that it points ahead.
+/// Whether the rope turns back across the ray of its pivot on the leg from `a` to `b`. If it was across before, by
+/// rounding, it is enough that it points ahead.
 fn unwraps(question: &Question, a: Vec2, b: Vec2) -> bool {
     let (way, back) = (question.way, question.back);
     let is_past = is_left(way, b) == (back > 0.0);
@@ -124,8 +124,8 @@ fn unwraps(question: &Question, a: Vec2, b: Vec2) -> bool {
     is_past && if was_past { dot(way, b) > 0.0 } else { cross(a, b) * back >= 0.0 }
 }
 
-/// The same on a leg on which the rope has turned already. A ray that lies behind its direction is one that the rope doubles
-/// back on, a half turn away.
+/// The same on a leg on which the rope has turned already. A ray that lies behind its direction is one that the rope
+/// doubles back on, a half turn away.
 fn unwraps_further(question: &Question, a: Vec2, b: Vec2) -> bool {
     let (way, back) = (question.way, question.back);
     let is_past = is_left(way, b) == (back > 0.0) && cross(a, b) * back >= 0.0;

@@ -18,8 +18,8 @@ const FURTHEST: f64 = (1u64 << 60) as f64;
 /// What is asked of the device: a window of legs about one pivot. The shader's `Question`.
 ///
 /// All coordinates are in the frame's unit, relative to the pivot, but for the vertices of lists that serve several
-/// pivots: these are relative to `origin` only after `origin` is taken from them. The sides of the wedge that the legs span
-/// only save work; a question whose normals are zero tries every vertex on every leg.
+/// pivots: these are relative to `origin` only after `origin` is taken from them. The sides of the wedge that the legs
+/// span only save work; a question whose normals are zero tries every vertex on every leg.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Question {
@@ -31,7 +31,8 @@ pub struct Question {
     pub ahead: Vec2,
     /// What is taken from the vertices.
     pub origin: Vec2,
-    /// The direction in which the rope's last leg points on the first leg of the window, if it has turned there already.
+    /// The direction in which the rope's last leg points on the first leg of the window, if it has turned there
+    /// already.
     pub start: Vec2,
     /// The way to the pivot from the prior.
     pub way: Vec2,
@@ -51,8 +52,8 @@ pub struct Question {
     pub points: u32,
     /// How many legs it has, at least 1; it has one point more.
     pub legs: u32,
-    /// The vertex, counted from `first`, that was unwrapped on the first leg and cannot be wrapped there again; [`NOTHING`]
-    /// if there is none.
+    /// The vertex, counted from `first`, that was unwrapped on the first leg and cannot be wrapped there again;
+    /// [`NOTHING`] if there is none.
     pub barred: u32,
     /// Fills 16 bytes.
     pub unused: [u32; 3],

@@ -24,10 +24,11 @@ pub(super) struct Outcome {
 
 /// What a device makes of f32, as far as a few thousand samples show.
 ///
-/// The bound of the candidate pass ([`MARGIN`](crate::candidates::MARGIN), step 1) assumes that a product or sum is one of the two
-/// nearest f32, that subnormal numbers may be taken for 0, that products and sums may be fused and put in another order, that a
-/// minimum is one of its arguments, and that a comparison with 0 holds for 0 and above. Whether a device fuses, flushes or
-/// rewrites sums is told, shape by shape, because it decides close calls with `--precision fast`.
+/// The bound of the candidate pass ([`MARGIN`](crate::candidates::MARGIN), step 1) assumes that a product or sum is one
+/// of the two nearest f32, that subnormal numbers may be taken for 0, that products and sums may be fused and put in
+/// another order, that a minimum is one of its arguments, and that a comparison with 0 holds for 0 and above. Whether a
+/// device fuses, flushes or rewrites sums is told, shape by shape, because it decides close calls with `--precision
+/// fast`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arithmetic {
     /// Whether all products and sums are the nearest f32, not only one of the two nearest.
@@ -99,7 +100,8 @@ impl Arithmetic {
         };
         if let (Some((what, must, given, exact)), None) = (why, &self.fault) {
             self.fault = Some(format!(
-                "its f32 are not what exact ropes rely on: a {what} must {must}, but is {given} where {exact:e} is exact"
+                "its f32 are not what exact ropes rely on: a {what} must {must}, but is {given} where {exact:e} is \
+                 exact"
             ));
         }
         self.largest_error = self.largest_error.max(error);
@@ -114,7 +116,8 @@ fn is_subnormal(exact: f64) -> bool {
     exact != 0.0 && exact.abs() < NORMAL
 }
 
-/// Whether `result` is one of the two f32 between which `exact` lies, or it itself if it is one; or 0 for a subnormal one.
+/// Whether `result` is one of the two f32 between which `exact` lies, or it itself if it is one; or 0 for a subnormal
+/// one.
 fn is_near(result: f32, exact: f64) -> bool {
     let nearest = exact as f32;
     let next = match f64::from(nearest).partial_cmp(&exact) {

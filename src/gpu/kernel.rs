@@ -117,7 +117,10 @@ mod tests {
         assert_eq!(layout(&module, "Query"), (size_of::<Query>() as u32, query));
         assert_eq!(layout(&module, "Found"), (size_of::<Found>() as u32, members!(Found: count, places)));
         let module = shader(DECIDE_WGSL);
-        let question = members!(Question: right, left, ahead, origin, start, way, reach, dir, back, wrapped, first, count, points, legs, barred);
+        let question = members!(
+            Question: right, left, ahead, origin, start, way, reach, dir, back, wrapped, first, count, points, legs,
+            barred
+        );
         let (size, members) = layout(&module, "Question");
         assert_eq!((size, &members[..question.len()]), (size_of::<Question>() as u32, &question[..]));
         assert_eq!(

@@ -21,8 +21,9 @@ const NOWHERE: u32 = u32::MAX;
 
 /// The pages, in blocks made as they are needed, and which lists lie where.
 ///
-/// Places are numbered through all pages. A list lies in one page if it can, else it begins a page and goes on through the
-/// next ones of its block. When all blocks that the budget allows are full, the one not used for longest is emptied.
+/// Places are numbered through all pages. A list lies in one page if it can, else it begins a page and goes on through
+/// the next ones of its block. When all blocks that the budget allows are full, the one not used for longest is
+/// emptied.
 pub(super) struct Pages {
     layout: wgpu::BindGroupLayout,
     blocks: Vec<Block>,
@@ -50,8 +51,8 @@ struct Block {
 }
 
 impl Pages {
-    /// Pages for the lists of `pivots` pivots, of at most `largest` vertices each, within a budget in bytes; two blocks are
-    /// the least.
+    /// Pages for the lists of `pivots` pivots, of at most `largest` vertices each, within a budget in bytes; two blocks
+    /// are the least.
     pub(super) fn new(opened: &Device, pivots: usize, largest: usize, budget: usize) -> Self {
         let layout = opened.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("page"),
@@ -80,8 +81,8 @@ impl Pages {
         self.round += 1;
     }
 
-    /// The place of the list of `pivot`, of `len` vertices; it is written there first, with their `coordinates`, if it is
-    /// not. `None` if all blocks hold lists of this round and none has room left.
+    /// The place of the list of `pivot`, of `len` vertices; it is written there first, with their `coordinates`, if it
+    /// is not. `None` if all blocks hold lists of this round and none has room left.
     pub(super) fn place(
         &mut self,
         opened: &Device,

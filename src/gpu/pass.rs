@@ -12,8 +12,9 @@ use super::kernel::{Kernel, Sweeping};
 use super::pages::{Pages, pages_of};
 use super::{Device, GpuError, Tuning};
 
-/// How many tests a round has at most, one a vertex and point, if that leaves work for one workgroup: 2^32, some seconds on the slowest adapter
-/// known (0.7e9 tests a second), well within the patience of drivers that watch for hanging kernels on real GPUs.
+/// How many tests a round has at most, one a vertex and point, if that leaves work for one workgroup: 2^32, some
+/// seconds on the slowest adapter known (0.7e9 tests a second), well within the patience of drivers that watch for
+/// hanging kernels on real GPUs.
 const TESTS_A_ROUND: usize = 1 << 32;
 
 /// How far apart the spans lie in their buffer: every device can bind a uniform buffer at multiples of 256 bytes.
@@ -64,9 +65,9 @@ struct Sent {
 }
 
 impl<K: Kernel> GpuPass<K> {
-    /// A pass of the kernel with source `wgsl` for the lists of `pivots` pivots, of at most `largest` vertices each, that
-    /// keeps up to `budget` bytes of them on the device. A round takes `tuning.queries` queries, or fewer where the device's
-    /// limits or the size of the lists ask for it.
+    /// A pass of the kernel with source `wgsl` for the lists of `pivots` pivots, of at most `largest` vertices each,
+    /// that keeps up to `budget` bytes of them on the device. A round takes `tuning.queries` queries, or fewer where
+    /// the device's limits or the size of the lists ask for it.
     ///
     /// # Errors
     ///
@@ -151,15 +152,15 @@ impl<K: Kernel> GpuPass<K> {
         self.pages.start_round();
     }
 
-    /// Where the list of `pivot`, of `len` vertices, lies on the device until the round is sent: the `first` of queries that
-    /// try it. If it is not there, it is brought, with the `coordinates` of its vertices. `None` if there is no room beside
-    /// the other lists of this round; the first list of a round always finds room.
+    /// Where the list of `pivot`, of `len` vertices, lies on the device until the round is sent: the `first` of queries
+    /// that try it. If it is not there, it is brought, with the `coordinates` of its vertices. `None` if there is no
+    /// room beside the other lists of this round; the first list of a round always finds room.
     pub fn place(&mut self, pivot: u32, len: usize, coordinates: impl FnOnce() -> Vec<[f32; 2]>) -> Option<u32> {
         self.pages.place(&self.device, pivot, len, coordinates)
     }
 
-    /// Sends a round of queries, sorted by `first`, whose lists were placed since the round was started, and the points that
-    /// they name.
+    /// Sends a round of queries, sorted by `first`, whose lists were placed since the round was started, and the points
+    /// that they name.
     ///
     /// # Panics
     ///
@@ -297,8 +298,8 @@ fn bytes_a_query<K: Kernel>() -> usize {
     size_of::<K::Query>().max(size_of::<K::Found>()).max(K::POINTS * size_of::<[f32; 2]>())
 }
 
-/// The pages that queries sorted by `first` touch, in order, and for each which queries do. Of each query it is given where
-/// the vertices to be tried begin and how many they are.
+/// The pages that queries sorted by `first` touch, in order, and for each which queries do. Of each query it is given
+/// where the vertices to be tried begin and how many they are.
 fn spans(queries: impl Iterator<Item = (u32, u32)>) -> Vec<(u32, Range<u32>)> {
     let mut spans: Vec<(u32, Range<u32>)> = Vec::new();
     // The pages of neighbours are the same or follow each other, since lists do not overlap.

@@ -33,7 +33,8 @@ impl Sample {
 const SMALL: [f32; 8] =
     [0.0, -0.0, 1e-40, -1e-40, f32::from_bits(1), -f32::from_bits(1), f32::MIN_POSITIVE, -f32::MIN_POSITIVE];
 
-/// Half-planes and points close to their lines, where rounding counts most; some have subnormal products or coordinates.
+/// Half-planes and points close to their lines, where rounding counts most; some have subnormal products or
+/// coordinates.
 pub(super) fn samples() -> Vec<Sample> {
     let mut state = 1u64;
     // SplitMix64 (Steele, Lea and Flood, OOPSLA 2014), from -1 to 1.

@@ -1,4 +1,5 @@
-//! The box round lines and curves: where curves themselves turn back, not where their control points or whole circles lie.
+//! The box round lines and curves: where curves themselves turn back, not where their control points or whole circles
+//! lie.
 
 use glam::{DAffine2, DVec2};
 

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 /// What a file leaves open and its reader needs to know.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SceneOptions {
-    /// How far a wall may lie from the curve that it stands for, in the scene's unit: above 0. `None` is a 2000th of the
-    /// drawing's longer side. For `.svg` and `.dxf`.
+    /// How far a wall may lie from the curve that it stands for, in the scene's unit: above 0. `None` is a 2000th of
+    /// the drawing's longer side. For `.svg` and `.dxf`.
     pub flatten: Option<f64>,
     /// What cells are of which the map does not know whether they are free. For `.yaml`.
     pub unknown: Unknown,

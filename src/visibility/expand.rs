@@ -62,16 +62,16 @@ impl View {
 }
 
 impl Mesh {
-    /// Writes all vertices that are visible from mesh vertex `o`, in the closed sense, into `seen`, the model's each once, and
-    /// returns how many triangles were looked at; `None` if it gave up because they were more than `most`.
+    /// Writes all vertices that are visible from mesh vertex `o`, in the closed sense, into `seen`, the model's each
+    /// once, and returns how many triangles were looked at; `None` if it gave up because they were more than `most`.
     ///
     /// A view is an open cone between two vertices seen before; what lies in it or on its bounding rays is listed. So a
     /// vertex that a line of sight grazes is listed, and what can be left out lies exactly behind another.
     ///
-    /// Only vertices are listed that lie inside all lines of some kind: `outside` has a bit for each line outside which a
-    /// point lies. `o` must lie inside all. Then what lies outside a line stays there when it is moved straight away from
-    /// `o`, and so does all that lies between two such points: no view is followed whose two bounding vertices, or whose
-    /// edge's two ends, lie outside one line.
+    /// Only vertices are listed that lie inside all lines of some kind: `outside` has a bit for each line outside which
+    /// a point lies. `o` must lie inside all. Then what lies outside a line stays there when it is moved straight away
+    /// from `o`, and so does all that lies between two such points: no view is followed whose two bounding vertices, or
+    /// whose edge's two ends, lie outside one line.
     #[inline]
     pub(super) fn expand(
         &self,
@@ -128,8 +128,8 @@ impl Mesh {
         triangles
     }
 
-    /// Follows the first `views` views of `scratch`, of which `listed` vertices were seen and for which `before` triangles
-    /// were looked at.
+    /// Follows the first `views` views of `scratch`, of which `listed` vertices were seen and for which `before`
+    /// triangles were looked at.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "they are what its callers share")]
     fn follow(

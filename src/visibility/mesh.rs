@@ -7,8 +7,8 @@ use super::crossings::crossings;
 use crate::geometry::{between, higher, lower, orient};
 use crate::scene::Model;
 
-/// Into how many pieces walls may be cut by vertices that lie on them, on average, before the rest stays out, which is safe:
-/// thousands of walls that lie on each other would be cut into millions.
+/// Into how many pieces walls may be cut by vertices that lie on them, on average, before the rest stays out, which is
+/// safe: thousands of walls that lie on each other would be cut into millions.
 const PIECES: usize = 16;
 
 /// Marks an edge through which one cannot see: a wall, or the mesh's outer border.
@@ -52,7 +52,8 @@ pub(super) const ABSENT: u32 = u32::MAX;
 type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 impl Mesh {
-    /// The part that looks inside the box of `reach` can see. `None` where the triangulation cannot take the coordinates.
+    /// The part that looks inside the box of `reach` can see. `None` where the triangulation cannot take the
+    /// coordinates.
     pub(super) fn new(model: &Model, (low, high): (DVec2, DVec2)) -> Option<Mesh> {
         let real = model.vertices().len();
         let is_near = |&wall: &u32| {
@@ -165,8 +166,8 @@ impl Mesh {
         }
     }
 
-    /// Closes the edges that lie on the first `walls` walls. Only those that are found by following a wall from vertex to vertex are closed,
-    /// so whatever else the triangulation holds as constraints hides nothing.
+    /// Closes the edges that lie on the first `walls` walls. Only those that are found by following a wall from vertex
+    /// to vertex are closed, so whatever else the triangulation holds as constraints hides nothing.
     fn close(&mut self, cdt: &Cdt, walls: usize) {
         for wall in 0..walls {
             let [u, v] = self.walls[wall];
@@ -219,7 +220,8 @@ impl Mesh {
         self.keep_spokes(|vertex, triangle| vertex != anchor || !left_out.contains(&triangle));
     }
 
-    /// Leaves half-edges out of all fans but those of which it holds: of the vertex at which they start and of their triangle.
+    /// Leaves half-edges out of all fans but those of which it holds: of the vertex at which they start and of their
+    /// triangle.
     fn keep_spokes(&mut self, is_kept: impl Fn(u32, u32) -> bool) {
         let (mut kept, mut first) = (0, 0);
         for v in 0..self.vertices.len() {
@@ -260,8 +262,8 @@ impl Mesh {
         &self.walls
     }
 
-    /// The ends of the walls along which one can see, or walk, from one side to the other somewhere: they cross others at
-    /// points that no f64 names, or there were too many walls on each other.
+    /// The ends of the walls along which one can see, or walk, from one side to the other somewhere: they cross others
+    /// at points that no f64 names, or there were too many walls on each other.
     pub(super) fn loose(&self) -> impl Iterator<Item = [DVec2; 2]> {
         self.loose.iter().map(|&wall| self.walls[wall as usize].map(|v| self.at(v)))
     }
@@ -306,8 +308,8 @@ pub(super) fn next(edge: u32) -> u32 {
     if edge % 4 == 2 { edge - 2 } else { edge + 1 }
 }
 
-/// The numbers of `points` in the order in which Morton's curve through the box of `bounds` passes them (Morton, "A computer
-/// oriented geodetic data base", 1966).
+/// The numbers of `points` in the order in which Morton's curve through the box of `bounds` passes them (Morton, "A
+/// computer oriented geodetic data base", 1966).
 fn along_curve(points: &[DVec2], (low, high): (DVec2, DVec2)) -> Vec<u32> {
     let scale = f64::from(u16::MAX) / (high - low).max_element();
     let key = |p: &DVec2| {

@@ -1,8 +1,8 @@
 //! What a pivot sees: the vertices that the rope can wrap round next.
 //!
-//! While a trace keeps to the rules, the rope's last leg is free of walls. So the next contact is visible from the pivot
-//! and tangent there. Both are exact signs of input points; where walls cannot be triangulated (they cross at a point
-//! that no f64 names), a vertex too many is listed, never one too few.
+//! While a trace keeps to the rules, the rope's last leg is free of walls. So the next contact is visible from the
+//! pivot and tangent there. Both are exact signs of input points; where walls cannot be triangulated (they cross at a
+//! point that no f64 names), a vertex too many is listed, never one too few.
 
 mod crossings;
 mod expand;
@@ -35,9 +35,9 @@ impl Visibility {
         Self::of(model, model.bounds(), None)
     }
 
-    /// Triangulates only the walls near the box between `reach`'s lowest and highest x and y, for looks inside it: what they
-    /// see there is all that there is to be seen there, since no line of sight leaves the box between. `reach` holds the
-    /// anchor.
+    /// Triangulates only the walls near the box between `reach`'s lowest and highest x and y, for looks inside it: what
+    /// they see there is all that there is to be seen there, since no line of sight leaves the box between. `reach`
+    /// holds the anchor.
     ///
     /// A taut rope never leaves the smallest box around its trace and the anchor.
     pub fn within(model: &Model, reach: (DVec2, DVec2)) -> Option<Self> {
@@ -79,9 +79,9 @@ impl Visibility {
         self.look_into(pivot, |_| 0, usize::MAX, scratch, seen);
     }
 
-    /// Writes those of them that lie inside all lines of some kind into `seen`, each once, and returns how many triangles
-    /// were looked at; `None`, and something in `seen` or nothing, if it gave up because they were more than `most`, or the
-    /// pivot lies out of reach.
+    /// Writes those of them that lie inside all lines of some kind into `seen`, each once, and returns how many
+    /// triangles were looked at; `None`, and something in `seen` or nothing, if it gave up because they were more than
+    /// `most`, or the pivot lies out of reach.
     ///
     /// `outside` has a bit for each line outside which a point lies; `pivot` must lie inside all. Looks no further than
     /// that: for pivots that are not worth a list. O(triangles of the mesh inside).

@@ -12,13 +12,15 @@ use crate::geometry::{higher, lower, orient};
 pub(crate) struct Reach {
     /// Those that can; where walls cross at a point that no f64 names, some may be missing.
     pub(crate) surely: Vec<bool>,
-    /// None of those that cannot is missing here; where walls cross at such a point, some that cannot may be among them.
+    /// None of those that cannot is missing here; where walls cross at such a point, some that cannot may be among
+    /// them.
     pub(crate) perhaps: Vec<bool>,
 }
 
 impl Visibility {
-    /// The triangles that can be reached from `pivot` without crossing a wall, in no particular order; none if it lies out of
-    /// reach. Where walls cross at a point that no f64 names, some that cannot be reached may be among them. O(triangles).
+    /// The triangles that can be reached from `pivot` without crossing a wall, in no particular order; none if it lies
+    /// out of reach. Where walls cross at a point that no f64 names, some that cannot be reached may be among them.
+    /// O(triangles).
     pub(crate) fn reached(&self, pivot: u32) -> Vec<u32> {
         self.reached_through(pivot, |_| true)
     }
@@ -29,8 +31,8 @@ impl Visibility {
         self.flood(self.mesh.fan(o).iter().map(|edge| edge / 4).collect(), is_passed)
     }
 
-    /// What can be reached from `at`, which lies in no wall, between its ends; from a wall's end, that is all round it. The
-    /// looks of this kind need the whole mesh. O(triangles log loose walls).
+    /// What can be reached from `at`, which lies in no wall, between its ends; from a wall's end, that is all round it.
+    /// The looks of this kind need the whole mesh. O(triangles log loose walls).
     pub(crate) fn reach(&self, at: DVec2) -> Reach {
         let is_around = |&triangle: &u32| {
             let [p, q, r] = self.triangle(triangle);
@@ -56,8 +58,8 @@ impl Visibility {
         Reach { surely: marked(surely), perhaps: marked(self.flood(around, |_| true)) }
     }
 
-    /// `triangles`, and all that are reached from them without crossing a wall, through edges only for whose number `is_passed`
-    /// holds.
+    /// `triangles`, and all that are reached from them without crossing a wall, through edges only for whose number
+    /// `is_passed` holds.
     fn flood(&self, mut triangles: Vec<u32>, is_passed: impl Fn(u32) -> bool) -> Vec<u32> {
         let mut is_reached = vec![false; self.mesh.triangles()];
         for &triangle in &triangles {
@@ -77,8 +79,8 @@ impl Visibility {
         triangles
     }
 
-    /// The triangles left and right of the wall from vertex `from` to vertex `to`; `None` if it is not one edge of the mesh,
-    /// or not closed. O(triangles round `from`).
+    /// The triangles left and right of the wall from vertex `from` to vertex `to`; `None` if it is not one edge of the
+    /// mesh, or not closed. O(triangles round `from`).
     pub(crate) fn beside(&self, from: u32, to: u32) -> Option<[u32; 2]> {
         let (from, to) = (self.mesh.pivot(from)?, self.mesh.pivot(to)?);
         let fan = self.mesh.fan(from).iter().copied();
@@ -98,8 +100,8 @@ impl Visibility {
         [0, 1, 2].map(|i| self.mesh.at(self.mesh.edge(4 * triangle + i).origin))
     }
 
-    /// What [`look`](Self::look) writes for a pivot, from a point inside a triangle or on its border, but not on a corner and
-    /// on no wall.
+    /// What [`look`](Self::look) writes for a pivot, from a point inside a triangle or on its border, but not on a
+    /// corner and on no wall.
     pub(crate) fn look_from(&self, at: DVec2, triangle: u32, scratch: &mut Scratch, seen: &mut Vec<u32>) {
         seen.clear();
         self.mesh.expand_from(at, triangle, scratch, seen);

@@ -7,18 +7,19 @@ use super::mesh::{ABSENT, CLOSED, next};
 use crate::geometry::{higher, lower, orient};
 
 impl Visibility {
-    /// Leaves out of all looks what no rope from the anchor meets while its free end keeps to the rules within reach: what
-    /// lies on the other side of walls that cannot be passed, and vertices that remain on this side but not as places where
-    /// a rope can turn, such as the inner corners of rooms.
+    /// Leaves out of all looks what no rope from the anchor meets while its free end keeps to the rules within reach:
+    /// what lies on the other side of walls that cannot be passed, and vertices that remain on this side but not as
+    /// places where a rope can turn, such as the inner corners of rooms.
     ///
-    /// Just before the rope's last leg passes a contact it is free of walls, and it turns about the pivot. So it has swept
-    /// the open half disk about the contact, however small, on the side from which it comes: no wall lies in it, and the
-    /// free end has come that way. What is required is therefore each vertex with a sector between two walls that spans at
-    /// least half a turn and can be reached from the anchor. Exactly half a turn is enough: contacts passed straight count.
+    /// Just before the rope's last leg passes a contact it is free of walls, and it turns about the pivot. So it has
+    /// swept the open half disk about the contact, however small, on the side from which it comes: no wall lies in it,
+    /// and the free end has come that way. What is required is therefore each vertex with a sector between two walls
+    /// that spans at least half a turn and can be reached from the anchor. Exactly half a turn is enough: contacts
+    /// passed straight count.
     ///
     /// Walls that are not in the mesh, because they are out of reach or cross others at a point that no f64 names, make
-    /// sectors wider and let more be reached: a vertex too many may be kept, never one too few. Where the reach is known, free
-    /// ends go through edges of triangles within it only, and no contact lies outside. O(triangles).
+    /// sectors wider and let more be reached: a vertex too many may be kept, never one too few. Where the reach is
+    /// known, free ends go through edges of triangles within it only, and no contact lies outside. O(triangles).
     #[must_use]
     pub fn only_required(mut self) -> Self {
         let mut is_reached = vec![false; self.mesh.triangles()];
@@ -50,8 +51,8 @@ impl Visibility {
         self.reach.is_none_or(meets)
     }
 
-    /// Whether a sector at vertex `v` of the mesh, whose fan holds the triangles that are reached and no others, spans at least
-    /// half a turn.
+    /// Whether a sector at vertex `v` of the mesh, whose fan holds the triangles that are reached and no others, spans
+    /// at least half a turn.
     fn has_room(&self, v: u32) -> bool {
         let fan = self.mesh.fan(v);
         let begins_sector = |spoke: &&u32| self.mesh.edge(**spoke).twin == CLOSED;

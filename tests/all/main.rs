@@ -15,6 +15,7 @@ mod filter;
 mod formats;
 mod gallery;
 mod golden;
+mod house;
 mod live;
 mod pictures;
 mod pushed;

@@ -1,5 +1,5 @@
-//! Extreme cases: families of scenes and traces at the ends of what is taken, where most signs are ties or as good as, and
-//! where there is very much or very little of something.
+//! Extreme cases: families of scenes and traces at the ends of what is taken, where most signs are ties or as good as,
+//! and where there is very much or very little of something.
 //!
 //! Every trace keeps to the rules, so exact engines must give the right ropes for all of them, or say why they cannot.
 

@@ -111,8 +111,8 @@ impl Canvas<'_> {
         self.svg.raw(&format!("<circle cx=\"{}\" cy=\"{}\" r=\"4.6\" {style}>{x}{y}</circle>", end[0], end[1]));
     }
 
-    /// The rope's points at each moment, as many for each: a rope with fewer corners goes through its pivot several times.
-    /// Where the corners change there are two of one time, which lie on each other.
+    /// The rope's points at each moment, as many for each: a rope with fewer corners goes through its pivot several
+    /// times. Where the corners change there are two of one time, which lie on each other.
     fn ropes(&self, film: &Film, clock: &Clock, anchor: DVec2, corners: usize) -> Vec<Change> {
         let text = |rope: usize, a: DVec2| {
             let mut points: Vec<DVec2> = std::iter::once(anchor).chain(film.ropes[rope].iter().map(|c| c.at)).collect();

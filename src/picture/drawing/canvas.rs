@@ -30,7 +30,8 @@ impl Canvas<'_> {
         (0.0..=self.frame.width).contains(&x) && (0.0..=self.frame.height).contains(&y)
     }
 
-    /// Path data of the part of a line that is to be seen. No number leaves the picture by much, however long the line is.
+    /// Path data of the part of a line that is to be seen. No number leaves the picture by much, however long the line
+    /// is.
     pub(super) fn line(&self, points: &[[f64; 2]]) -> String {
         let room = View { low: DVec2::splat(-8.0), high: DVec2::new(self.frame.width, self.frame.height) + 8.0 };
         let mut data = String::new();

@@ -12,11 +12,11 @@ use crate::scene::Model;
 use crate::visibility::{Scratch, Visibility};
 
 impl Canvas<'_> {
-    /// At most `most` rays, those that lie nearest to the free end, of the wall ends that the pivot sees; and the unwrapping
-    /// ray.
+    /// At most `most` rays, those that lie nearest to the free end, of the wall ends that the pivot sees; and the
+    /// unwrapping ray.
     ///
-    /// The ray of a wall end starts there and goes away from the pivot. Where that ends at a wall, the rope's last leg cannot
-    /// follow it.
+    /// The ray of a wall end starts there and goes away from the pivot. Where that ends at a wall, the rope's last leg
+    /// cannot follow it.
     pub(super) fn rays(&mut self, model: &Model, moment: &Moment, most: usize) {
         if most == 0 {
             return;

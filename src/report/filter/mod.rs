@@ -25,27 +25,27 @@ pub struct Filter {
     pub tried: u64,
     /// How many of them it named.
     pub named: u64,
-    /// How many of those named lie in their query's triangle before it is grown, as far as f64 tells: the others were named in
-    /// vain because f32 is trusted no further.
+    /// How many of those named lie in their query's triangle before it is grown, as far as f64 tells: the others were
+    /// named in vain because f32 is trusted no further.
     pub covered: u64,
-    /// How many of those tried lie in a triangle that the rope's last leg sweeps on one of the query's legs, exactly. A query
-    /// of several legs covers more than these.
+    /// How many of those tried lie in a triangle that the rope's last leg sweeps on one of the query's legs, exactly. A
+    /// query of several legs covers more than these.
     pub inside: u64,
     /// How many of these it did not name.
     pub missed: u64,
 }
 
 impl Filter {
-    /// Which share of the vertices named is outside their query's triangle, and named because of its margin; 0 where none was
-    /// named.
+    /// Which share of the vertices named is outside their query's triangle, and named because of its margin; 0 where
+    /// none was named.
     pub fn false_share(&self) -> f64 {
         if self.named == 0 { 0.0 } else { (self.named - self.covered) as f64 / self.named as f64 }
     }
 
-    /// The queries of `traces`, in windows from event to event as engines fold them, each about the vertices that the pivot
-    /// sees; without those that go on from the middle of a leg in which something happened. The traces keep to the rules, start
-    /// at the anchor and touch no wall, as those of [`settled_walks`](crate::example::settled_walks) do. On all cores; every
-    /// vertex tried is compared with every leg, exactly.
+    /// The queries of `traces`, in windows from event to event as engines fold them, each about the vertices that the
+    /// pivot sees; without those that go on from the middle of a leg in which something happened. The traces keep to
+    /// the rules, start at the anchor and touch no wall, as those of [`settled_walks`](crate::example::settled_walks)
+    /// do. On all cores; every vertex tried is compared with every leg, exactly.
     ///
     /// # Errors
     ///
@@ -136,7 +136,8 @@ fn covers(query: &Query, frame: &Frame, p: DVec2) -> bool {
     })
 }
 
-/// Whether `p` lies in the closed triangle, exactly. Where it has no area, that is the segment between its outermost corners.
+/// Whether `p` lies in the closed triangle, exactly. Where it has no area, that is the segment between its outermost
+/// corners.
 fn holds([a, b, c]: [DVec2; 3], p: DVec2) -> bool {
     let (low, high) = (lower(lower(a, b), c), higher(higher(a, b), c));
     if !(p.cmpge(low).all() && p.cmple(high).all()) {

@@ -12,11 +12,12 @@ use crate::scene::{Model, Scene};
 /// How many queries a trial has.
 pub const QUERIES: usize = 512;
 
-/// How many vertices a query tries at most: as many as it can name, and an even number, since lists begin at even places.
+/// How many vertices a query tries at most: as many as it can name, and an even number, since lists begin at even
+/// places.
 const VERTICES: usize = ROOM - 1;
 
-/// A scene of some size somewhere in the plane, with [`QUERIES`] queries of up to 14 vertices each, and which of them lie in
-/// the swept triangles, by exact signs.
+/// A scene of some size somewhere in the plane, with [`QUERIES`] queries of up to 14 vertices each, and which of them
+/// lie in the swept triangles, by exact signs.
 pub struct Trial {
     asked: Vec<Asked>,
 }
@@ -30,9 +31,9 @@ struct Asked {
 impl Trial {
     /// Trial `number` of a seed. O([`QUERIES`] log [`QUERIES`]), some milliseconds.
     ///
-    /// Triangles are of every shape: between points of the scene, on a small lattice, or up to 2^80 scenes away; legs that
-    /// start on their way; windows of several legs. Scenes have a unit from 2^-200 to 2^200 or lie up to a million of it
-    /// off the origin.
+    /// Triangles are of every shape: between points of the scene, on a small lattice, or up to 2^80 scenes away; legs
+    /// that start on their way; windows of several legs. Scenes have a unit from 2^-200 to 2^200 or lie up to a million
+    /// of it off the origin.
     pub fn new(seed: u64, number: u64) -> Self {
         let mut draws = Draws::new(seed, number);
         let unit = if number.is_multiple_of(2) { 1.0 } else { 2f64.powi(draws.whole(-200, 200) as i32) };
@@ -175,8 +176,8 @@ fn trace_point(draws: &mut Draws) -> DVec2 {
     }
 }
 
-/// A point on a side of the triangle, or up to 10^-5 of a scene of size `size` off it, to either side; one in eight is at a
-/// corner.
+/// A point on a side of the triangle, or up to 10^-5 of a scene of size `size` off it, to either side; one in eight is
+/// at a corner.
 fn near_side(draws: &mut Draws, corners: [DVec2; 3], size: f64) -> DVec2 {
     let side = draws.whole(0, 2) as usize;
     let (from, to) = (corners[side], corners[(side + 1) % 3]);

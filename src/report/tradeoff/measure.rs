@@ -57,8 +57,8 @@ pub struct Tradeoff {
     pub traces: usize,
     /// See [`traces`](Self::traces).
     pub steps: u64,
-    /// For how many traces, from the first on, the scalar reference itself vouched for the truth; for the others the engine
-    /// `cpu` did, which gave the same records for these.
+    /// For how many traces, from the first on, the scalar reference itself vouched for the truth; for the others the
+    /// engine `cpu` did, which gave the same records for these.
     pub vouched: usize,
     /// By method, then by setting.
     pub points: Vec<Point>,
@@ -85,8 +85,8 @@ struct Lane<'v> {
 ///
 /// # Errors
 ///
-/// A trace that crosses a wall, an engine that fails, and exact methods that differ. What a method or a setting cannot take is
-/// listed in [`Tradeoff::failed`].
+/// A trace that crosses a wall, an engine that fails, and exact methods that differ. What a method or a setting cannot
+/// take is listed in [`Tradeoff::failed`].
 pub fn tradeoff(
     work: &Work,
     wanted: &Wanted,

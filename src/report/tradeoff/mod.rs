@@ -1,8 +1,8 @@
 //! Speed against accuracy: every method at every setting on the same traces, against the exact reference.
 //!
 //! A work-precision diagram in the sense of numerical analysis: what a trace-step costs against what is wrong about its
-//! rope. Times are those of the engine alone, per step of the traces as they are, whether or not a setting uses it; what a
-//! setting saves in reading and checking comes on top.
+//! rope. Times are those of the engine alone, per step of the traces as they are, whether or not a setting uses it;
+//! what a setting saves in reading and checking comes on top.
 
 mod error;
 mod measure;

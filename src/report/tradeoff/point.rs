@@ -35,8 +35,9 @@ pub struct Point {
     pub length: Answer,
     /// The mean number of wraps a trace; `None` for a method that keeps no events.
     pub wraps: Option<Answer>,
-    /// Whether no other point is faster and as right, or as fast and more right: by the median time, the shares of traces whose
-    /// events and whose rope at the end differ, and the mean error of the length. A method that keeps no events has none right.
+    /// Whether no other point is faster and as right, or as fast and more right: by the median time, the shares of
+    /// traces whose events and whose rope at the end differ, and the mean error of the length. A method that keeps no
+    /// events has none right.
     pub pareto: bool,
 }
 

@@ -19,8 +19,8 @@ use map::parse;
 /// How many walls a map may have. Images as small as a few bytes can hold far more.
 const WALLS_MAX: usize = 1 << 23;
 
-/// Reads a map and the image that it names, relative to the map's own folder. Coordinates are metres in the map's frame,
-/// y upwards. What lies around the image is no cell: its outer edge is no wall.
+/// Reads a map and the image that it names, relative to the map's own folder. Coordinates are metres in the map's
+/// frame, y upwards. What lies around the image is no cell: its outer edge is no wall.
 pub(super) fn read(path: &Path, ros: Ros, unknown: Unknown) -> Result<Scene, ReadError> {
     let text = read_text(path, SETTINGS_MAX)?;
     let map = parse(&text).map_err(|fault| fault.in_file(path))?;

@@ -1,8 +1,8 @@
 //! Scenes as SVG drawings: what is drawn is a wall, along its outline.
 //!
 //! Coordinates are those of the outermost viewBox, y downwards as in the file. The crates that read XML, style sheets
-//! and SVG's own notations are those that `usvg` stands on. `usvg` itself computes in f32 and passes over what it cannot
-//! read, so the tree is walked here.
+//! and SVG's own notations are those that `usvg` stands on. `usvg` itself computes in f32 and passes over what it
+//! cannot read, so the tree is walked here.
 
 mod bounds;
 mod css_transform;
@@ -68,9 +68,9 @@ const DEFINITIONS: [&str; 20] = [
 
 /// Reads a drawing.
 ///
-/// path, line, polyline, polygon, rect, circle and ellipse are walls, in groups and used ones too. What is hidden or not
-/// painted is none; texts and images are none and are counted. The element with the id or the Inkscape label `anchor` marks
-/// the anchor by its middle, painted or not.
+/// path, line, polyline, polygon, rect, circle and ellipse are walls, in groups and used ones too. What is hidden or
+/// not painted is none; texts and images are none and are counted. The element with the id or the Inkscape label
+/// `anchor` marks the anchor by its middle, painted or not.
 pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
     bounds::check_entities(text)?;
     bounds::check_tags(text)?;

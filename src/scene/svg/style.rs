@@ -165,12 +165,14 @@ mod tests {
     fn the_cascade_decides() {
         let text = r##"<svg>
             <style>.off { display: none } #on { display: inline } g > .pale { visibility: hidden; fill: red }
-                .cut { clip-path: url(#c) } .firm { display: none !important } .moved { transform: rotate(3deg) }</style>
+                .cut { clip-path: url(#c) } .firm { display: none !important }
+                .moved { transform: rotate(3deg) }</style>
             <style media="print">e { display: none }</style>
             <a class="off"/><b class="off" id="on"/><c class="off" style="fill:red;DISPLAY:inline"/>
             <g><d class="pale x"/></g><e class="cut"/><f class="firm" style="display:inline"/>
             <h display="none"/><i display="none" style="display:block"/><j style="visibility:visible" mask="none"/>
-            <l class="moved" transform="scale(2)"/><m style="marker:none" marker-end="url(#m)"/><n style="r:unset" r="1"/></svg>"##;
+            <l class="moved" transform="scale(2)"/><m style="marker:none" marker-end="url(#m)"/>
+            <n style="r:unset" r="1"/></svg>"##;
         let document = Document::parse(text).unwrap();
         let styles = Styles::of(&document);
         let said = |name: &str| {

@@ -4,13 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// A place in the tree of modules, without the crate: `["gpu", "pages"]`.
-pub type Module = Vec<String>;
+pub(super) type Module = Vec<String>;
 
 /// From each file to the files from which it imports, and the names that it takes from there.
-pub type Imports = BTreeMap<Module, BTreeMap<Module, BTreeSet<String>>>;
+pub(super) type Imports = BTreeMap<Module, BTreeMap<Module, BTreeSet<String>>>;
 
-/// The library and the command line, as one tree of modules.
-pub struct House {
+/// The library and the command line, as one tree of modules. What the file of the binary itself imports is left out.
+pub(super) struct House {
     files: BTreeMap<Module, File>,
 }
 
@@ -33,13 +33,15 @@ struct Use {
 
 impl House {
     /// Reads all files under `src`.
-    pub fn read(src: &Path) -> House {
+    pub(super) fn read(src: &Path) -> House {
         let mut files = BTreeMap::new();
         for path in super::sources(src) {
             let module = path.strip_prefix(src).expect("under src").with_extension("");
             let mut module: Module = module.iter().map(|part| part.to_string_lossy().into_owned()).collect();
-            if matches!(module.last().map(String::as_str), Some("mod" | "lib")) {
-                module.pop();
+            match module.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+                ["main"] | ["build"] => continue,
+                [.., "mod"] | ["lib"] => drop(module.pop()),
+                _ => {}
             }
             files.insert(module, File::of(&std::fs::read_to_string(path).expect("a source file is read")));
         }
@@ -52,7 +54,7 @@ impl House {
     }
 
     /// Who imports from whom. A name that a module passes on counts as one of the file that defines it.
-    pub fn imports(&self) -> Imports {
+    pub(super) fn imports(&self) -> Imports {
         self.files.keys().map(|module| (module.clone(), self.imports_of(module))).collect()
     }
 
@@ -78,7 +80,10 @@ impl House {
         let mut i = 0;
         while i < file.body.len() {
             let start = i;
-            while i + 2 < file.body.len() && is_word(&file.body[i]) && file.body[i + 1] == "::" && is_word(&file.body[i + 2]) {
+            while let [word, "::", next, ..] = [0, 1, 2].map(|n| file.body.get(i + n).map_or("", String::as_str))
+                && is_word(word)
+                && is_word(next)
+            {
                 i += 2;
             }
             let path: Vec<String> = file.body[start..=i].iter().step_by(2).cloned().collect();
@@ -217,7 +222,8 @@ fn words(text: &str) -> Vec<String> {
             first.len_utf8()
         };
         let (word, after) = rest.split_at(len);
-        if is_word(word) && literal_len(rest).is_none() || (len <= 2 && !first.is_whitespace() && !word.starts_with("//")) {
+        let is_left_out = first.is_whitespace() || word.starts_with("//") || literal_len(rest).is_some();
+        if !is_left_out {
             words.push(word.to_owned());
         }
         rest = after;
