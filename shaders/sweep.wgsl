@@ -5,7 +5,7 @@
 // name a vertex too many, never one too few (the margin is in the query; `src/candidates/query.rs` derives it). The CPU
 // decides exactly.
 //
-// The twin on the CPU is `src/candidates/list.rs`.
+// The twin on the CPU is `Simd::sweep` in `src/candidates/simd.rs`.
 
 // How many vertices a page holds, two to a vec4.
 const PAGE: u32 = 8190u;

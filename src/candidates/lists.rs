@@ -119,7 +119,7 @@ impl<'m> Lists<'m> {
     /// Gets ready for traces inside a box from `low` to `high`: walls out of reach of all traces are left out of the
     /// triangulation. Returns whether what was made before had to be dropped, because these go further than any before.
     ///
-    /// Lists that were used before they were told of any trace are ready for all.
+    /// If lists were used before the first call, their triangulation holds all walls: the call then changes nothing.
     pub fn cover(&mut self, (low, high): (DVec2, DVec2)) -> bool {
         let anchor = self.model.anchor();
         let (mut low, mut high) = (lower(low, anchor), higher(high, anchor));

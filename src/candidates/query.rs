@@ -15,7 +15,7 @@ use super::Frame;
 ///    what is exact, and so off by less than the distance between these two. A product and a sum may be fused, which
 ///    rounds once instead of twice, and sums may be put in another order. Subnormal numbers, those that go in too, may
 ///    be taken for 0. A minimum is one of its arguments. x >= 0 holds for 0 and above. Devices are asked whether they
-///    keep to that (`src/gpu/arithmetic.rs`). The loops on the CPU (`simd.rs`) fuse, reorder and flush nothing and
+///    keep to that (`src/gpu/probe.rs`). The loops on the CPU (`simd.rs`) fuse, reorder and flush nothing and
 ///    round to the nearest, which is one of the two; NaN, by which they fill up lists, compares as false, and no device
 ///    is given it.
 /// 2. *The frame.* [`Frame::place`] rounds the subtraction of the centre and nothing else, so each coordinate is good
@@ -29,13 +29,13 @@ use super::Frame;
 /// 4. *A wedge in f64.* A unit vector is good to 4, a normal to 10 x 2^-53 of 1.81; at P that is 52 x 2^-53. An offset
 ///    of at most 6.6 (beyond, step 6 holds) is good to 10 x 2^-53 of itself, 66; the product with the pivot and the two
 ///    last sums add 28, the places of pivot and vertex 6. With step 3 that is 209 x 2^-53, less than 2^-45.
-/// 5. *A leg in f64.* The sides are swapped only where the sign of the product of its ends is wrong: where these lie on
-///    one line with O but for an angle of 4 x 2^-53. Either P is then that close to both sides (at an angle near 0), or
-///    the triangle is flat and no point of it is further from the sides than 4 x 2^-53 of 2.83 and of the shorter way;
-///    beyond a right angle ways have no more than `LONGEST` sqrt(2) = 2^20.5: less than 2^-30.4. The far side is put
-///    behind both ends, whatever its direction, so all of the triangle lies before it; each end's distance is good to 4
-///    x 2^-53 of its way, 2^-30.5 beyond a right angle; below one the way is at most sqrt(2) times an offset of 6.6 or
-///    less, or step 6 holds. Together less than 2^-30.
+/// 5. *A leg in f64.* Rounding can swap left and right only if both ends lie within an angle of 4 x 2^-53 of one line
+///    through O. If they lie on the same side of O, P is that close to both sides of the triangle. If they lie on
+///    opposite sides, the triangle is flat: no point of it is further from the sides than 4 x 2^-53 of 2.83 and of the
+///    shorter way. Beyond a right angle a way has at most `LONGEST` sqrt(2) = 2^20.5, so that is less than 2^-30.4. The
+///    far side is put behind both ends, whatever its direction, so all of the triangle lies before it. Each end's
+///    distance is good to 4 x 2^-53 of its way: 2^-30.5 beyond a right angle; below one, the way is at most sqrt(2)
+///    times an offset of 6.6 or less, or step 6 holds. Together less than 2^-30.
 /// 6. *The offset is clamped* to `FAR` = 4. A normal's length is at most sqrt(1 + 1.5^2) < 1.81 ([`LONGEST_NORMAL`]),
 ///    so |n . p| is at most 1.81 sqrt(2) < 2.56. Where it was more than 4, the value is still above 4 - 2.56 less all
 ///    errors; where it was less than -4, P could not be inside.

@@ -1,6 +1,6 @@
 //! Many traces at once on a device: each round, every active trace asks one query, the device answers them all, and the
-//! traces go on by the answers. Finished traces leave and waiting ones take their place. Two half-batches take turns, so that
-//! one is on the device while the other is on the CPU.
+//! traces go on by the answers. Finished traces leave and waiting ones take their place. Two half-batches take turns,
+//! so that one is on the device while the other is on the CPU.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,7 +15,7 @@ use crate::scene::Model;
 use crate::trace::SettledTrace;
 use crate::visibility::Scratch;
 
-/// What takes one trace after the other from query to query.
+/// Takes a trace from query to query, then the next one: it asks, and goes on by what the device answers.
 pub(super) trait Player: Send {
     /// What answers it.
     type Kernel: Kernel;

@@ -202,7 +202,7 @@ impl Mesh {
         }
     }
 
-    /// Leaves the triangles of which it does not hold out of all fans, so that looks never start into them.
+    /// Leaves all triangles but those that `is_kept` marks out of all fans, so that looks never start into the others.
     pub(super) fn start_only_in(&mut self, is_kept: &[bool]) {
         self.keep_spokes(|_, triangle| is_kept[triangle as usize]);
     }
@@ -220,8 +220,8 @@ impl Mesh {
         self.keep_spokes(|vertex, triangle| vertex != anchor || !left_out.contains(&triangle));
     }
 
-    /// Leaves half-edges out of all fans but those of which it holds: of the vertex at which they start and of their
-    /// triangle.
+    /// Leaves half-edges out of all fans but those of which `is_kept` holds: it is given the vertex at which a
+    /// half-edge starts, and its triangle.
     fn keep_spokes(&mut self, is_kept: impl Fn(u32, u32) -> bool) {
         let (mut kept, mut first) = (0, 0);
         for v in 0..self.vertices.len() {

@@ -25,7 +25,7 @@ impl Visibility {
         self.reached_through(pivot, |_| true)
     }
 
-    /// The same through edges only for whose number it holds.
+    /// The triangles that can be reached from `pivot` through those edges alone for whose numbers `is_passed` holds.
     pub(super) fn reached_through(&self, pivot: u32, is_passed: impl Fn(u32) -> bool) -> Vec<u32> {
         let Some(o) = self.mesh.pivot(pivot) else { return Vec::new() };
         self.flood(self.mesh.fan(o).iter().map(|edge| edge / 4).collect(), is_passed)
