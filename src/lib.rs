@@ -55,8 +55,10 @@ pub mod report;
 pub mod rope;
 pub mod scene;
 pub mod simplify;
+pub mod stream;
 pub mod study;
 pub mod trace;
+pub mod trade;
 pub mod visibility;
 
 pub use number::parse_number;

@@ -7,14 +7,14 @@ use anyhow::anyhow;
 use serde_json::{Value, json};
 use tautline::picture::Drawing;
 use tautline::scene::{Inside, Model, Scene};
+use tautline::stream::Batches;
 use tautline::study::anchor_warnings;
 use tautline::trace::{Violation, ViolationKind};
+use tautline::trade::Terms;
 
-use super::batches::Batches;
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::look::{Look, Target, save};
-use super::trade::Terms;
 use super::words::{counted, dropped, place};
 use super::{print, print_json};
 

@@ -8,9 +8,9 @@ use tautline::example::some_walks;
 use tautline::picture::{Drawing, Situation};
 use tautline::rope::TraceRecord;
 use tautline::scene::Model;
+use tautline::stream::Source;
 use tautline::trace::{SettledTrace, Trace, TraceReader, settle_owned};
 
-use super::batches::Source;
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::look::{Look, Target, write};

@@ -1,21 +1,19 @@
 //! `tautline eval`.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant;
 
 use anyhow::anyhow;
-use tautline::engine::{Engine, Job};
+use tautline::engine::{Engine, Job, Precision};
 use tautline::output::check_output;
-use tautline::scene::Model;
+use tautline::stream::{Batches, Files, Stage, evaluate};
+use tautline::trade::Terms;
 
-use super::batches::{Batch, Batches};
 use super::engine::EngineArgs;
 use super::failure::Failure;
 use super::input::InputArgs;
-use super::output::Output;
 use super::progress::{Progress, with_progress};
-use super::summary::{Summary, Times};
+use super::summary::Summary;
 use super::trade::TradeArgs;
 use super::words::dropped;
 use super::{print, print_json};
@@ -64,45 +62,37 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (mut engine, on) = args.engine.open(model)?;
     let batches = Batches::start(source, terms.clone(), engine.batch());
     let mut summary = Summary::new(&args.input.name(), &terms.given, &*engine, on);
-    if args.trade.is_any() {
-        summary.trade(args.trade, model);
+    if terms.trade.is_any() {
+        summary.trade(terms.trade, model);
     }
     summary.label(model);
-    let mut times = evaluate(args, model, batches, &mut *engine, &mut summary)?;
+    let files = Files::new(args.out.as_deref(), args.events.as_deref(), model, notes(&terms, &*engine));
+    let mut violations = args.input.violations();
+    let (job, progress, policy) = (Job::new(), Progress::new(batches.size()), violations.policy());
+    let watch = |stage: Stage<'_>| match stage {
+        Stage::Read { settled, position } => {
+            violations.flag(settled);
+            progress.begin(position, settled.iter().map(|t| t.steps() as u64).sum());
+        }
+        Stage::Evaluated { settled, records } => summary.add(model, settled, records),
+    };
+    let outcome = with_progress(&progress, &job, || evaluate(batches, &mut *engine, files, policy, &job, watch));
+    let times = outcome.map_err(|error| violations.failure(error))?;
+    violations.finish();
     summary.learn(&*engine);
-    times.total = start.elapsed();
-    if args.json { print_json(&summary.json(&times)) } else { print(&summary.table(&times, args.out.is_none())) }
+    let total = start.elapsed();
+    if args.json {
+        print_json(&summary.json(&times, total))
+    } else {
+        print(&summary.table(&times, total, args.out.is_none()))
+    }
 }
 
-/// Evaluates batch after batch, and writes what was asked for.
-fn evaluate(
-    args: &Args,
-    model: &Arc<Model>,
-    mut batches: Batches,
-    engine: &mut dyn Engine,
-    summary: &mut Summary,
-) -> Result<Times, Failure> {
-    let job = Job::new();
-    let mut times = Times::default();
-    let mut violations = args.input.violations();
-    let notes = args.trade.notes(engine.precision());
-    let mut output = Output::new(args.out.as_deref(), args.events.as_deref(), model, notes);
-    let progress = Progress::new(batches.size());
-    with_progress(&progress, &job, || {
-        while let Some(Batch { settled, position, prepared }) = batches.next()? {
-            violations.take(&settled)?;
-            progress.begin(position, settled.iter().map(|t| t.steps() as u64).sum());
-            times.prepared += prepared;
-            let start = Instant::now();
-            let records = engine.evaluate(&settled, &job)?;
-            times.evaluated += start.elapsed();
-            summary.add(model, &settled, &records);
-            output.write(records)?;
-        }
-        violations.finish();
-        times.written = output.finish()?;
-        Ok(times)
-    })
+/// What results say of themselves: nothing if they are exact.
+fn notes(terms: &Terms, engine: &dyn Engine) -> Vec<(&'static str, String)> {
+    let fast = engine.precision().filter(|&p| p == Precision::Fast);
+    let fast = fast.map(|p| ("tautline.precision", p.name().to_owned()));
+    terms.trade.notes().into_iter().chain(fast).collect()
 }
 
 /// Refuses outputs that cannot be written, and those that would replace another file of this run.

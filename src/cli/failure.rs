@@ -10,6 +10,7 @@ use tautline::gpu::GpuError;
 use tautline::output::WriteError;
 use tautline::picture::DrawError;
 use tautline::scene::AnchorError;
+use tautline::stream::StreamError;
 use tautline::study::{PlanError, StateError};
 
 /// A failed command.
@@ -123,6 +124,18 @@ impl From<EngineError> for Failure {
             EngineError::Gpu(error) => error.into(),
             EngineError::Stopped => Failure::interrupted(false),
             EngineError::Unfit { .. } => Failure::input(error.into()),
+        }
+    }
+}
+
+impl From<StreamError> for Failure {
+    fn from(error: StreamError) -> Self {
+        match error {
+            StreamError::Read(error) => error.into(),
+            StreamError::Engine(error) => error.into(),
+            StreamError::Write(error) => error.into(),
+            StreamError::Violation(_) => Failure::input(error.into()),
+            StreamError::Ended => Failure::internal(error.into()),
         }
     }
 }

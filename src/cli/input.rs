@@ -7,10 +7,10 @@ use glam::DVec2;
 use tautline::escape::{escaped, escaped_path};
 use tautline::example::{Walker, floor_plan};
 use tautline::scene::{AnchorError, Model, Ros, Scene, SceneOptions, Unknown, read_scene_with};
+use tautline::stream::Source;
 use tautline::study::anchor_warnings;
 use tautline::trace::TraceReader;
 
-use super::batches::Source;
 use super::failure::Failure;
 use super::parse::{above_zero, point};
 use super::violations::{OnViolation, Violations};

@@ -4,7 +4,6 @@
 mod say;
 
 mod adapters;
-mod batches;
 mod bench;
 mod check;
 mod convert;
@@ -19,7 +18,6 @@ mod interrupt;
 mod look;
 mod manual;
 mod named_scene;
-mod output;
 mod parse;
 mod progress;
 mod queries;

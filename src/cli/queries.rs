@@ -12,10 +12,10 @@ use tautline::engine::{Cpu, Engine, Job};
 use tautline::queries::{Driver, Query, read_queries};
 use tautline::rope::TraceRecord;
 use tautline::scene::{GridMap, Model};
+use tautline::stream::Files;
 use tautline::trace::{Trace, settle_owned};
 
 use super::failure::Failure;
-use super::output::Output;
 use super::words::{counted, short};
 use super::{print, print_json};
 
@@ -56,9 +56,9 @@ pub(crate) fn run(scene: &Path, queries: &Path, out: Option<&Path>, as_json: boo
     };
     let answers: Vec<Answer> =
         asked.par_iter().enumerate().map_init(|| Driver::new(&map), answer).collect::<Result<_, _>>()?;
-    let mut output = Output::new(out, None, &first, Vec::new());
-    output.write(answers.iter().map(|answer| answer.record.clone()).collect())?;
-    output.finish()?;
+    let mut files = Files::new(out, None, &first, Vec::new());
+    files.write(answers.iter().map(|answer| answer.record.clone()).collect())?;
+    files.finish()?;
     if as_json { print_json(&report(scene, queries, &answers)) } else { print(&table(scene, queries, &map, &answers)) }
 }
 

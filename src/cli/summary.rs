@@ -9,11 +9,13 @@ use tautline::engine::{Engine, Precision};
 use tautline::rope::{EventKind, TraceRecord};
 use tautline::scene::Model;
 
-use tautline::study::{Traded, quantity};
+use tautline::stream::Times;
+use tautline::study::quantity;
 use tautline::trace::SettledTrace;
+use tautline::trade::{Trade, Traded};
 
 use super::spread::{Counts, Lengths, Spread};
-use super::trade::{TradeArgs, words};
+use super::trade::words;
 use super::words::{counted, grouped, place, short};
 
 /// A run in numbers.
@@ -36,7 +38,7 @@ pub(crate) struct Summary {
     violations: u64,
     /// The steps of all others.
     counted_steps: u64,
-    traded: Option<(TradeArgs, Traded)>,
+    traded: Option<(Trade, Traded)>,
     wraps: u64,
     unwraps: u64,
     length: Lengths,
@@ -51,19 +53,6 @@ pub(crate) struct Summary {
 
 /// How many labels the table has at the most.
 const LABELS: usize = 10;
-
-/// How long the parts of a run took. They go on at the same time, so their sum may be more than the whole.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Times {
-    /// Reading and checking traces.
-    pub prepared: Duration,
-    /// The engine.
-    pub evaluated: Duration,
-    /// Writing results and events.
-    pub written: Duration,
-    /// From the start to the end of it all.
-    pub total: Duration,
-}
 
 /// How much an engine's ropes can be trusted, as reports name it: `f64` where they are wrong by design.
 pub(super) fn precision(engine: &dyn Engine) -> &'static str {
@@ -140,7 +129,7 @@ impl Summary {
     }
 
     /// What was traded, and the scene as ropes see it.
-    pub(crate) fn trade(&mut self, trade: TradeArgs, used: &Model) {
+    pub(crate) fn trade(&mut self, trade: Trade, used: &Model) {
         let (vertices, vertices_left) = (self.vertices as u64, used.vertices().len() as u64);
         self.traded = Some((trade, Traded { vertices, vertices_left, ..Traded::default() }));
     }
@@ -148,11 +137,7 @@ impl Summary {
     /// Counts the next traces and their records in.
     pub(crate) fn add(&mut self, used: &Model, settled: &[SettledTrace], records: &[TraceRecord]) {
         if let Some((_, traded)) = &mut self.traded {
-            for trace in settled {
-                traded.jumps += trace.jumps() as u64;
-                traded.crossing_traces += u64::from(trace.crossings() > 0);
-                traded.crossing_steps += trace.crossings() as u64;
-            }
+            settled.iter().for_each(|trace| traded.add(trace));
         }
         for (trace, record) in settled.iter().zip(records) {
             self.traces += 1;
@@ -177,11 +162,11 @@ impl Summary {
     }
 
     /// Steps a second from start to end.
-    fn rate(&self, times: &Times) -> f64 {
-        self.steps as f64 / times.total.as_secs_f64().max(1e-9)
+    fn rate(&self, total: Duration) -> f64 {
+        self.steps as f64 / total.as_secs_f64().max(1e-9)
     }
 
-    pub(crate) fn table(&self, times: &Times, hint: bool) -> String {
+    pub(crate) fn table(&self, times: &Times, total: Duration, hint: bool) -> String {
         let anchor = place(self.anchor.into());
         let events = self.wraps + self.unwraps;
         let mut text = format!(
@@ -200,7 +185,7 @@ impl Summary {
             self.on,
         );
         if let Some((trade, traded)) = &self.traded {
-            text += &format!("traded   {}\n", words(trade.stride.unwrap_or(1), trade.simplify, traded));
+            text += &format!("traded   {}\n", words(*trade, traded));
         }
         if self.violations > 0 {
             let what =
@@ -231,13 +216,13 @@ impl Summary {
         if let Some(more @ 1..) = self.touched.len().checked_sub(LABELS) {
             text += &format!("  and {more} more labels\n");
         }
-        let [prepared, evaluated, written, total] =
-            [times.prepared, times.evaluated, times.written, times.total].map(|t| t.as_secs_f64());
+        let [prepared, evaluated, written, seconds] =
+            [times.prepared, times.evaluated, times.written, total].map(|t| t.as_secs_f64());
         let written = if written > 0.0 { format!(", writing {written:.2} s") } else { String::new() };
         text += &format!(
-            "\n{total:.2} s, {} steps/s\n\
+            "\n{seconds:.2} s, {} steps/s\n\
              at the same time: reading and checking {prepared:.2} s, evaluating {evaluated:.2} s{written}\n",
-            grouped(self.rate(times) as u64)
+            grouped(self.rate(total) as u64)
         );
         if hint {
             text += "--out FILE writes every trace's rope, --events FILE every wrap and unwrap\n";
@@ -254,7 +239,7 @@ impl Summary {
         }
     }
 
-    pub(crate) fn json(&self, times: &Times) -> Value {
+    pub(crate) fn json(&self, times: &Times, total: Duration) -> Value {
         json!({
             "scene": {
                 "name": self.scene, "walls": self.walls, "vertices": self.vertices, "remaining": self.remaining,
@@ -263,7 +248,7 @@ impl Summary {
             "engine": self.engine, "precision": self.precision, "on": self.on,
             "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
             "traded": self.traded.as_ref().map(|(trade, traded)| json!({
-                "stride": trade.stride.unwrap_or(1), "simplify": trade.simplify,
+                "stride": trade.stride, "simplify": trade.simplify,
                 "vertices_left": traded.vertices_left, "jumps": traded.jumps,
                 "crossing_traces": traded.crossing_traces, "crossing_steps": traded.crossing_steps,
             })),
@@ -276,9 +261,9 @@ impl Summary {
                 .collect::<Vec<_>>(),
             "seconds": {
                 "prepare": times.prepared.as_secs_f64(), "evaluate": times.evaluated.as_secs_f64(),
-                "write": times.written.as_secs_f64(), "total": times.total.as_secs_f64(),
+                "write": times.written.as_secs_f64(), "total": total.as_secs_f64(),
             },
-            "steps_per_second": self.rate(times),
+            "steps_per_second": self.rate(total),
         })
     }
 }

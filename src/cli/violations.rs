@@ -1,6 +1,7 @@
 //! Traces that cross walls: what is said about them, and whether they end the run.
 
 use anyhow::anyhow;
+use tautline::stream::{self, StreamError};
 use tautline::trace::{SettledTrace, Violation};
 
 use super::failure::Failure;
@@ -12,6 +13,15 @@ pub(crate) enum OnViolation {
     Error,
     /// Mark such traces in the results and go on
     Flag,
+}
+
+impl From<OnViolation> for stream::OnViolation {
+    fn from(policy: OnViolation) -> Self {
+        match policy {
+            OnViolation::Error => stream::OnViolation::Error,
+            OnViolation::Flag => stream::OnViolation::Flag,
+        }
+    }
 }
 
 /// How many are warned of one by one.
@@ -34,20 +44,41 @@ impl Violations {
     /// Looks through the next traces: the first violation is an error, or all are warned of and returned.
     pub(crate) fn take(&mut self, settled: &[SettledTrace]) -> Result<Vec<Violation>, Failure> {
         let violations: Vec<Violation> = settled.iter().filter_map(|t| t.violation().copied()).collect();
-        let file = &self.file;
         match (violations.first(), self.policy) {
-            (Some(first), OnViolation::Error) => {
-                let hint = "--on-violation flag marks such traces and goes on";
-                return Err(Failure::input(anyhow!("{file}{first}; {hint}")));
-            }
-            (Some(_), OnViolation::Flag) => {
-                let left = SHOWN.saturating_sub(self.found);
-                violations.iter().take(left).for_each(|v| say!("warning: {file}{v}"));
-            }
-            (None, _) => {}
+            (Some(first), OnViolation::Error) => return Err(self.refused(first)),
+            _ => violations.iter().for_each(|violation| self.warn(violation)),
         }
-        self.found += violations.len();
         Ok(violations)
+    }
+
+    /// Warns of the violations of traces that are marked.
+    pub(crate) fn flag(&mut self, settled: &[SettledTrace]) {
+        settled.iter().filter_map(|t| t.violation()).for_each(|violation| self.warn(violation));
+    }
+
+    fn warn(&mut self, violation: &Violation) {
+        if self.found < SHOWN {
+            say!("warning: {}{violation}", self.file);
+        }
+        self.found += 1;
+    }
+
+    fn refused(&self, violation: &Violation) -> Failure {
+        let hint = "--on-violation flag marks such traces and goes on";
+        Failure::input(anyhow!("{}{violation}; {hint}", self.file))
+    }
+
+    /// What is said of a stream that ended early.
+    pub(crate) fn failure(&self, error: StreamError) -> Failure {
+        match error {
+            StreamError::Violation(violation) => self.refused(&violation),
+            other => other.into(),
+        }
+    }
+
+    /// What is done with them.
+    pub(crate) fn policy(&self) -> stream::OnViolation {
+        self.policy.into()
     }
 
     /// Says how many were not warned of, and returns how many there are.

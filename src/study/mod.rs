@@ -27,7 +27,7 @@ pub use run::{RunError, Spent, run, run_again};
 pub use state::{Check, Kept, Part, Shard, State, StateError, merge};
 pub use summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Stopped, Summary, Survival,
-    SurvivalPoint, Traded, quantity,
+    SurvivalPoint, quantity,
 };
 pub use surroundings::anchor_warnings;
 pub(crate) use tally::Moments;

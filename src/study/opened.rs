@@ -17,7 +17,6 @@ use crate::example::BuiltIn;
 use crate::geometry::{Shown, number};
 use crate::read_file::open;
 use crate::scene::{AnchorError, Model, Scene, read_scene_with};
-use crate::simplify::simplify;
 use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
 
 /// A study that can be run.
@@ -62,7 +61,9 @@ impl Study {
         let identity = identity(&plan, &models, given.as_deref())?;
         let bounds = models.iter().map(|m| m.bounds()).reduce(|(l, h), (low, high)| (l.min(low), h.max(high)));
         let bounds = bounds.expect("a study has an anchor");
-        let setting = Setting::new(&plan, simplified(&plan, &models)?, bounds);
+        let simplified =
+            plan.run.trade().simplified(&models).map_err(|e| PlanError::new(format!("run.simplify: {e}")))?;
+        let setting = Setting::new(&plan, simplified, bounds);
         let least = setting.unit;
         if setting.bin < least {
             return Err(PlanError::new(format!(
@@ -169,8 +170,8 @@ impl Study {
 
     /// A trace as ropes see it.
     fn traded(&self, trace: SettledTrace) -> SettledTrace {
-        let (run, model) = (&self.plan.run, self.model(trace.id()));
-        if run.is_traded() { trace.coarsened(model, run.stride as usize) } else { trace }
+        let model = self.model(trace.id());
+        self.plan.run.trade().coarsened(trace, model)
     }
 
     /// Refuses a study whose walks all stand still: no step of the first traces, one at least from each anchor and five in
@@ -298,16 +299,6 @@ fn counted(mut plan: Plan, folder: &Path) -> Result<Plan, PlanError> {
     };
     plan.run.traces = Some(count);
     plan.checked()
-}
-
-/// The same with fewer wall ends, if the plan says so.
-fn simplified(plan: &Plan, models: &[Arc<Model>]) -> Result<Vec<Arc<Model>>, PlanError> {
-    let Some(tolerance) = plan.run.simplify else { return Ok(models.to_vec()) };
-    let wrong = |e: String| PlanError::new(format!("run.simplify: {e}"));
-    let anchors: Vec<DVec2> = models.iter().map(|m| m.anchor()).collect();
-    let scene = simplify(models[0].scene(), &anchors, tolerance).map_err(|e| wrong(e.to_string()))?;
-    let first = Model::new(scene, Some(anchors[0])).map_err(|e| wrong(e.to_string()))?;
-    anchors.iter().map(|&at| first.tied(at).map(Arc::new).map_err(|e| wrong(e.to_string()))).collect()
 }
 
 /// The scene with each of the plan's anchors.

@@ -9,6 +9,7 @@ use super::file_places::located;
 use crate::engine::Precision;
 use crate::read_file::{SETTINGS_MAX, read_text};
 use crate::scene::{Ros, SceneOptions, Unknown};
+use crate::trade::Trade;
 
 /// A study, as its file describes it. All lengths are in the scene's unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -237,9 +238,9 @@ impl RunPlan {
         self.traces.unwrap_or(TRACES)
     }
 
-    /// Whether accuracy is given for speed, other than by precision.
-    pub fn is_traded(&self) -> bool {
-        self.stride > 1 || self.simplify.is_some()
+    /// What accuracy is given for speed, other than by precision.
+    pub fn trade(&self) -> Trade {
+        Trade { stride: self.stride, simplify: self.simplify }
     }
 }
 

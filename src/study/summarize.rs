@@ -7,10 +7,11 @@ use super::opened::Study;
 use super::state::{Shard, State};
 use super::summary::{
     Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Summary, Survival,
-    SurvivalPoint, Traded,
+    SurvivalPoint,
 };
 use super::tally::{Counts, Moments, SCALARS, Setting, of_rank};
 use crate::rope::Side;
+use crate::trade::Traded;
 
 /// Which quantiles are given.
 const QUANTILES: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99];
@@ -35,7 +36,7 @@ impl State {
             at_walls: plan.walk.at_walls().and_then(|_| share_of(counts.met, steps)),
             events: counts.events,
             blocks: counts.traces.blocks,
-            traded: plan.run.is_traded().then(|| Traded {
+            traded: plan.run.trade().is_any().then(|| Traded {
                 vertices: study.vertices() as u64,
                 vertices_left: study.models()[0].vertices().len() as u64,
                 jumps: counts.jumps,

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::plan::Plan;
+use crate::trade::Traded;
 
 /// The answer. Lengths are in the scene's unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -55,21 +56,6 @@ impl Summary {
     pub fn schema() -> serde_json::Value {
         schemars::schema_for!(Summary).to_value()
     }
-}
-
-/// What it came to that accuracy was given for speed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-pub struct Traded {
-    /// How many wall ends the scene has.
-    pub vertices: u64,
-    /// How many of them were left.
-    pub vertices_left: u64,
-    /// How many longer steps would have touched a wall, and were walked point by point.
-    pub jumps: u64,
-    /// How many traces cross a simplified wall.
-    pub crossing_traces: u64,
-    /// How many steps do.
-    pub crossing_steps: u64,
 }
 
 /// Why a study ended.

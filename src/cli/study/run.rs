@@ -23,7 +23,7 @@ use crate::cli::input::{note, warn};
 use crate::cli::interrupt::{Guard, Last};
 use crate::cli::progress::{Progress, with_progress};
 use crate::cli::summary::precision;
-use crate::cli::trade::{self, TradeArgs};
+use crate::cli::trade::TradeArgs;
 use crate::cli::{print, print_json};
 
 #[derive(Debug, clap::Args)]
@@ -278,7 +278,7 @@ pub(super) fn provenance(study: &Study, (engine, precision): (&str, &str), on: &
         ("tautline.precision", precision.to_owned()),
         ("tautline.on", on.to_owned()),
     ];
-    notes.extend(trade::notes(run.stride, run.simplify));
+    notes.extend(run.trade().notes());
     notes
 }
 

@@ -72,8 +72,7 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
         ));
     }
     if let Some(traded) = &summary.traded {
-        let run = &summary.study.run;
-        line(format_args!("traded: {}", trade::words(run.stride, run.simplify, traded)));
+        line(format_args!("traded: {}", trade::words(summary.study.run.trade(), traded)));
     }
     let most =
         run.and_then(|run| run["scene"]["remaining"].as_array()?.iter().filter_map(serde_json::Value::as_u64).max());

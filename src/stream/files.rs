@@ -1,4 +1,4 @@
-//! Writing results and events in a thread of their own while the next batch is evaluated.
+//! Results and events in a thread of their own, which writes them while the next batch is evaluated.
 
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
@@ -7,18 +7,17 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
-use tautline::output::{EventWriter, ResultWriter, WholeFile, commit};
-use tautline::rope::TraceRecord;
-use tautline::scene::Model;
-
-use super::failure::Failure;
+use super::StreamError;
+use crate::output::{EventWriter, ResultWriter, WholeFile, WriteError, commit};
+use crate::rope::TraceRecord;
+use crate::scene::Model;
 
 /// How many records are written at a time; their text is held in memory.
 const RECORDS: usize = 1024;
 
 /// The files of a run. They are begun with the first batch and appear under their names in [`finish`](Self::finish);
 /// dropped before that, nothing is left of them.
-pub(crate) struct Output {
+pub struct Files {
     out: Option<PathBuf>,
     events: Option<PathBuf>,
     model: Arc<Model>,
@@ -30,26 +29,31 @@ pub(crate) struct Output {
 struct Running {
     /// Taken when no more records come.
     sender: Option<SyncSender<Vec<TraceRecord>>>,
-    thread: Option<JoinHandle<Result<Written, Failure>>>,
+    thread: Option<JoinHandle<Result<Written, WriteError>>>,
 }
 
 /// Whole files that wait for their names, and how long writing them took.
 type Written = (Vec<WholeFile>, Duration);
 
-impl Output {
-    /// Results go to `out`, events to `events`, where they are asked for.
-    pub(crate) fn new(
+impl Files {
+    /// Results go to `out`, events to `events`, where they are asked for, for ropes in `model`. The notes go into the
+    /// metadata of Parquet files.
+    pub fn new(
         out: Option<&Path>,
         events: Option<&Path>,
         model: &Arc<Model>,
         notes: Vec<(&'static str, String)>,
     ) -> Self {
         let [out, events] = [out, events].map(|path| path.map(Path::to_owned));
-        Output { out, events, model: model.clone(), notes, running: None }
+        Files { out, events, model: model.clone(), notes, running: None }
     }
 
-    /// Takes the next records, and waits while those before are being written. Errors of earlier records are found here.
-    pub(crate) fn write(&mut self, records: Vec<TraceRecord>) -> Result<(), Failure> {
+    /// Takes the next records, and waits while those before are being written.
+    ///
+    /// # Errors
+    ///
+    /// What went wrong with these or with earlier records.
+    pub fn write(&mut self, records: Vec<TraceRecord>) -> Result<(), StreamError> {
         if self.out.is_none() && self.events.is_none() {
             return Ok(());
         }
@@ -60,7 +64,11 @@ impl Output {
     }
 
     /// Writes the rest and gives all files their names; returns how long writing took.
-    pub(crate) fn finish(mut self) -> Result<Duration, Failure> {
+    ///
+    /// # Errors
+    ///
+    /// What went wrong with any records. Then no file has its name.
+    pub fn finish(mut self) -> Result<Duration, StreamError> {
         if self.out.is_none() && self.events.is_none() {
             return Ok(Duration::ZERO);
         }
@@ -70,7 +78,7 @@ impl Output {
         Ok(took)
     }
 
-    fn run(&mut self) -> Result<&mut Running, Failure> {
+    fn run(&mut self) -> Result<&mut Running, StreamError> {
         if self.running.is_none() {
             let (sender, records) = sync_channel(0);
             let (out, events, model) = (self.out.clone(), self.events.clone(), self.model.clone());
@@ -84,12 +92,12 @@ impl Output {
 
 impl Running {
     /// Waits for the thread.
-    fn end(&mut self) -> Result<Written, Failure> {
+    fn end(&mut self) -> Result<Written, StreamError> {
         self.sender = None;
         match self.thread.take().map(JoinHandle::join) {
-            Some(Ok(result)) => result,
+            Some(Ok(result)) => Ok(result?),
             Some(Err(panic)) => resume_unwind(panic),
-            None => Err(Failure::internal(anyhow::anyhow!("the files were ended before"))),
+            None => Err(StreamError::Ended),
         }
     }
 }
@@ -108,7 +116,7 @@ fn write_all(
     model: &Model,
     notes: &[(&str, String)],
     records: &Receiver<Vec<TraceRecord>>,
-) -> Result<Written, Failure> {
+) -> Result<Written, WriteError> {
     let mut took = Duration::ZERO;
     let mut out = out.map(|path| ResultWriter::create(path, model.scene())).transpose()?;
     let mut events = events.map(|path| EventWriter::create(path, model.scene())).transpose()?;

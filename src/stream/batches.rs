@@ -7,28 +7,29 @@ use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use tautline::example::{Walker, some_walks};
-use tautline::scene::Model;
-use tautline::trace::{SettledTrace, Trace, TraceReader};
 
-use super::failure::Failure;
-use super::trade::Terms;
+use super::StreamError;
+use crate::example::{Walker, some_walks};
+use crate::scene::Model;
+use crate::trace::{SettledTrace, Trace, TraceReader};
+use crate::trade::Terms;
 
-/// How many points the traces of a batch have together at most. A batch of long traces has fewer of them, so that memory
-/// stays bounded: 64 MB of points for each of the two batches under way: one that is read and checked, one that is
-/// evaluated. Engines that can make use of more traces at once than others get up to eight times as much.
+/// How many points the traces of a batch have together at most. A batch of long traces has fewer of them, so that
+/// memory stays bounded: 64 MB of points for each of the two batches under way: one that is read and checked, one that
+/// is evaluated. Engines that can make use of more traces at once than others get up to eight times as much.
 const POINTS: RangeInclusive<usize> = 1 << 22..=1 << 25;
 
 /// Where traces come from.
-pub(crate) enum Source {
+pub enum Source {
+    /// A file.
     File(TraceReader),
-    /// The built-in example, and which of its traces are left.
+    /// Walks in the scene that is given, and the numbers of those that are left.
     Walks(Walker, Range<u64>),
 }
 
 impl Source {
     /// The next traces, drawn in `model` if they are not in a file.
-    fn next(&mut self, model: &Model, traces: usize) -> Result<Option<Vec<Trace>>, Failure> {
+    fn next(&mut self, model: &Model, traces: usize) -> Result<Option<Vec<Trace>>, StreamError> {
         let points = (512 * traces).clamp(*POINTS.start(), *POINTS.end());
         match self {
             Source::File(reader) => Ok(reader.next_batch(traces, points)?),
@@ -59,25 +60,27 @@ impl Source {
 }
 
 /// Traces that are ready to be evaluated.
-pub(crate) struct Batch {
+pub struct Batch {
+    /// The traces, in the order of the source.
     pub settled: Vec<SettledTrace>,
-    /// How much of the source has been read with them.
+    /// How much of the source has been read with them, in the unit of [`Batches::size`].
     pub position: u64,
-    /// How long reading and checking took.
+    /// How long reading and checking them took.
     pub prepared: Duration,
 }
 
-/// Batches to come.
-pub(crate) struct Batches {
-    waiting: Receiver<Result<Batch, Failure>>,
+/// Batches to come: while one is evaluated, the next is read and checked in a thread of its own.
+pub struct Batches {
+    waiting: Receiver<Result<Batch, StreamError>>,
     thread: Option<JoinHandle<()>>,
     size: u64,
 }
 
 impl Batches {
-    /// Begins to read batches of at most `traces` traces. The thread ends with the source, with the first error, or when nobody waits any more; it is not
-    /// waited for then, since reading from a pipe may take for ever.
-    pub(crate) fn start(source: Source, terms: Terms, traces: usize) -> Self {
+    /// Begins to read batches of at most `traces` traces, and of a bounded number of points. The thread ends with the
+    /// source, with the first error, or when nobody waits any more; it is not waited for then, since reading from a
+    /// pipe may take for ever.
+    pub fn start(source: Source, terms: Terms, traces: usize) -> Self {
         let size = source.size();
         // Without room in between: a batch that is ready waits in the thread, and the one after it is not read yet.
         let (ready, waiting) = sync_channel(0);
@@ -85,13 +88,18 @@ impl Batches {
         Batches { waiting, thread: Some(thread), size }
     }
 
-    /// How large the source is, in the unit of [`Batch::position`]; 0 if nobody knows.
-    pub(crate) fn size(&self) -> u64 {
+    /// How large the source is, in rows, bytes or traces; 0 if nobody knows.
+    pub fn size(&self) -> u64 {
         self.size
     }
 
     /// The next batch; `None` after the last.
-    pub(crate) fn next(&mut self) -> Result<Option<Batch>, Failure> {
+    ///
+    /// # Errors
+    ///
+    /// A source that cannot be read.
+    #[allow(clippy::should_implement_trait)] // an error ends it
+    pub fn next(&mut self) -> Result<Option<Batch>, StreamError> {
         match self.waiting.recv() {
             Ok(batch) => batch.map(Some),
             Err(_) => {
@@ -104,7 +112,7 @@ impl Batches {
     }
 }
 
-fn prepare(mut source: Source, terms: &Terms, traces: usize, ready: &SyncSender<Result<Batch, Failure>>) {
+fn prepare(mut source: Source, terms: &Terms, traces: usize, ready: &SyncSender<Result<Batch, StreamError>>) {
     loop {
         let start = Instant::now();
         let batch = match source.next(&terms.given, traces) {
