@@ -1,6 +1,7 @@
 //! The candidate pass over all vertices, on the CPU and as one round of the GPU: `cargo bench --bench candidates`. Rates are
 //! in queries.
 
+use std::sync::Arc;
 use std::sync::LazyLock;
 
 use divan::Bencher;
@@ -19,11 +20,12 @@ const QUERIES: u64 = 4096;
 /// How many legs a query covers at most: about what windows grow to.
 const LEGS: usize = 32;
 
-static MODEL: LazyLock<Model> =
-    LazyLock::new(|| Model::new(BuiltIn::Random(500).scene(1), None).expect("the anchor stands off the walls"));
+static MODEL: LazyLock<Arc<Model>> = LazyLock::new(|| {
+    Arc::new(Model::new(BuiltIn::Random(500).scene(1), None).expect("the anchor stands off the walls"))
+});
 
 /// Queries about the anchor over the windows that start with the second point of as many walks.
-fn queries(lists: &Lists<'_>) -> Vec<Query> {
+fn queries(lists: &Lists) -> Vec<Query> {
     let mut slopes = Slopes::default();
     let mut query = |points: &[_]| {
         let window = Window::fold(Simd::detected(), MODEL.anchor(), None, points, &mut slopes)?;
@@ -36,7 +38,7 @@ fn queries(lists: &Lists<'_>) -> Vec<Query> {
 /// On one thread.
 #[divan::bench]
 fn cpu(bencher: Bencher<'_, '_>) {
-    let lists = Lists::new(&MODEL).keep_all();
+    let lists = Lists::new(MODEL.clone()).keep_all();
     let queries = queries(&lists);
     let (list, simd, mut found) = (lists.all(), Simd::detected(), Vec::new());
     bencher.counter(ItemsCount::new(queries.len())).bench_local(|| {
@@ -49,7 +51,7 @@ fn cpu(bencher: Bencher<'_, '_>) {
 /// One round: upload, kernel and readback, on the best adapter that there is.
 #[divan::bench]
 fn gpu_round(bencher: Bencher<'_, '_>) {
-    let lists = Lists::new(&MODEL).keep_all();
+    let lists = Lists::new(MODEL.clone()).keep_all();
     let (list, mut queries) = (lists.all(), queries(&lists));
     let device = Device::open(&AdapterChoice::Best).expect("an adapter");
     let (n, tuning) = (MODEL.vertices().len(), device.tuning());

@@ -1,5 +1,6 @@
 //! Engines side by side on the built-in floor plan: `cargo bench`.
 
+use std::sync::Arc;
 use std::sync::LazyLock;
 
 use divan::Bencher;
@@ -14,7 +15,8 @@ fn main() {
     divan::main();
 }
 
-static MODEL: LazyLock<Model> = LazyLock::new(|| Model::new(floor_plan(), None).expect("the plan has an anchor"));
+static MODEL: LazyLock<Arc<Model>> =
+    LazyLock::new(|| Arc::new(Model::new(floor_plan(), None).expect("the plan has an anchor")));
 static TRACES: LazyLock<Vec<Trace>> = LazyLock::new(|| walks(&MODEL, Walker { step: 0.25, steps: 500, seed: 1 }, 1000));
 static SETTLED: LazyLock<Vec<SettledTrace>> = LazyLock::new(|| TRACES.iter().map(|t| settle(&MODEL, t)).collect());
 
@@ -27,29 +29,29 @@ fn time(bencher: Bencher<'_, '_>, engine: &mut dyn Engine, traces: usize) {
 
 #[divan::bench(sample_count = 10)]
 fn reference(bencher: Bencher<'_, '_>) {
-    time(bencher, &mut Reference::new(&MODEL), 20);
+    time(bencher, &mut Reference::new(MODEL.clone()), 20);
 }
 
 #[divan::bench(sample_count = 10)]
 fn note(bencher: Bencher<'_, '_>) {
-    time(bencher, &mut Note::new(&MODEL), 20);
+    time(bencher, &mut Note::new(MODEL.clone()), 20);
 }
 
 #[divan::bench(sample_count = 10)]
 fn funnel(bencher: Bencher<'_, '_>) {
-    time(bencher, &mut Funnel::new(&MODEL), 200);
+    time(bencher, &mut Funnel::new(MODEL.clone()), 200);
 }
 
 #[divan::bench(sample_count = 10)]
 fn cpu(bencher: Bencher<'_, '_>) {
-    time(bencher, &mut Cpu::new(&MODEL), 1000);
+    time(bencher, &mut Cpu::new(MODEL.clone()), 1000);
 }
 
 /// On the best adapter that there is.
 #[divan::bench(sample_count = 10)]
 fn gpu(bencher: Bencher<'_, '_>) {
     let device = Device::open(&AdapterChoice::Best).expect("an adapter");
-    time(bencher, &mut Gpu::new(device, &MODEL).expect("a pass"), 1000);
+    time(bencher, &mut Gpu::new(device, MODEL.clone()).expect("a pass"), 1000);
 }
 
 /// Checking traces against the walls and settling touches.

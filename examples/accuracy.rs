@@ -9,6 +9,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
+use std::sync::Arc;
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -79,15 +80,15 @@ fn tradeoff(name: &str, args: &str) -> Result<String> {
 }
 
 /// A scene of the tests.
-fn file(name: &str, anchor: Option<[f64; 2]>) -> Result<Model> {
+fn file(name: &str, anchor: Option<[f64; 2]>) -> Result<Arc<Model>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(name);
-    Ok(Model::new(read_scene(&path)?, anchor.map(Into::into))?)
+    Ok(Arc::new(Model::new(read_scene(&path)?, anchor.map(Into::into))?))
 }
 
 /// How often the note's listing goes wrong, by the length of a step.
 fn note() -> Result<String> {
-    let built_in = |scene: BuiltIn| -> Result<(Model, f64)> {
-        Ok((Model::new(scene.scene(1), None)?, BenchScene::BuiltIn(scene).step()))
+    let built_in = |scene: BuiltIn| -> Result<(Arc<Model>, f64)> {
+        Ok((Arc::new(Model::new(scene.scene(1), None)?), BenchScene::BuiltIn(scene).step()))
     };
     let (random, random_step) = built_in(BuiltIn::Random(500))?;
     let (lattice, lattice_step) = built_in(BuiltIn::Lattice(500))?;
@@ -137,8 +138,8 @@ fn extremes() -> Result<String> {
 fn depth() -> Result<String> {
     let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(DVec2::from);
     let pillar = Scene::new((0..4).map(|i| [corners[i], corners[(i + 1) % 4]]))?;
-    let model = Model::new(pillar, Some([0.0, -3.0].into()))?;
-    let mut engine = Cpu::new(&model);
+    let model = Arc::new(Model::new(pillar, Some([0.0, -3.0].into()))?);
+    let mut engine = Cpu::new(model.clone());
     let mut text = String::from("| times round the pillar | greatest depth | ns a step |\n|---|---|---|\n");
     for turns in [1, 10, 100, 1000, 10_000, 100_000] {
         // There and back, 8 steps a turn.
@@ -163,8 +164,8 @@ fn depth() -> Result<String> {
 /// What the candidate pass names, and what of that is in vain.
 fn filter() -> Result<String> {
     let trials: Vec<Filter> = (0..8192).into_par_iter().map(|i| Trial::new(20, i).swept(Simd::detected())).collect();
-    let random = Model::new(BuiltIn::Random(500).scene(1), None)?;
-    let walks = |model: &Model, step| {
+    let random = Arc::new(Model::new(BuiltIn::Random(500).scene(1), None)?);
+    let walks = |model: &Arc<Model>, step| {
         Filter::of_walks(model, &settled_walks(model, Walker { step, steps: 500, seed: 1 }, 2000))
     };
     let rows = [

@@ -3,6 +3,7 @@
 //!     cargo run --release --example haptic_loop
 
 use std::error::Error;
+use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -11,8 +12,8 @@ use tautline::example::BuiltIn;
 use tautline::scene::Model;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let model = Model::new(BuiltIn::Rooms.scene(1), None)?;
-    let mut rope = LiveRope::new(&model);
+    let model = Arc::new(Model::new(BuiltIn::Rooms.scene(1), None)?);
+    let mut rope = LiveRope::new(model.clone());
 
     // A hand that goes on in long curves, and turns where a wall stops it.
     let (mut heading, mut moves, mut refused, mut events) = (0.0f64, 0u32, 0u32, 0);

@@ -3,6 +3,7 @@
 //!     cargo run --release --example in_memory
 
 use std::error::Error;
+use std::sync::Arc;
 
 use glam::DVec2;
 use tautline::engine::{Cpu, Engine, Job};
@@ -13,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A square pillar, and the anchor west of it.
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(DVec2::from);
     let walls = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]);
-    let model = Model::new(Scene::new(walls)?, Some(DVec2::new(-3.0, 0.0)))?;
+    let model = Arc::new(Model::new(Scene::new(walls)?, Some(DVec2::new(-3.0, 0.0)))?);
 
     // Trace k goes k quarters of a turn about it, counter-clockwise, as a circle of radius 2.
     let point = |i: usize| DVec2::from_angle(std::f64::consts::PI * (1.0 + i as f64 / 16.0)) * 2.0;
@@ -23,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err((*violation).into());
     }
 
-    for record in Cpu::new(&model).evaluate(&settled, &Job::new())? {
+    for record in Cpu::new(model.clone()).evaluate(&settled, &Job::new())? {
         let corners: Vec<String> = record.wraps.iter().map(|(at, _)| format!("({}, {})", at.x, at.y)).collect();
         println!("{} quarters: {:.3} long, round {}", record.trace, record.length, corners.join(" "));
     }

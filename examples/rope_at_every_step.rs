@@ -3,6 +3,7 @@
 //!     cargo run --release --example rope_at_every_step
 
 use std::error::Error;
+use std::sync::Arc;
 
 use tautline::engine::{Engine, Job, Reference};
 use tautline::example::{BuiltIn, Walker, walks};
@@ -11,9 +12,9 @@ use tautline::scene::Model;
 use tautline::trace::settle;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let model = Model::new(BuiltIn::Rooms.scene(1), None)?;
+    let model = Arc::new(Model::new(BuiltIn::Rooms.scene(1), None)?);
     let trace = walks(&model, Walker { step: 0.5, steps: 60, seed: 3 }, 1).remove(0);
-    let record = Reference::new(&model).evaluate(&[settle(&model, &trace)], &Job::new())?.remove(0);
+    let record = Reference::new(model.clone()).evaluate(&[settle(&model, &trace)], &Job::new())?.remove(0);
 
     println!("step      x      y  length  contacts");
     replay(model.anchor(), model.vertices(), trace.points.len(), &record.events, |step, rope| {

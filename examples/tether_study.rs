@@ -28,7 +28,7 @@ block = 500
 fn main() -> Result<(), Box<dyn Error>> {
     let study = Study::open(Plan::parse(PLAN)?, Path::new("."))?;
     // One for each anchor; here there is but one.
-    let mut engines: Vec<Box<dyn Engine + '_>> = study.models().iter().map(|m| Box::new(Cpu::new(m)) as _).collect();
+    let mut engines: Vec<Box<dyn Engine>> = study.models().iter().map(|m| Box::new(Cpu::new(m.clone())) as _).collect();
     let state = Mutex::new(State::new(&study, Shard::WHOLE));
     run(&study, &mut engines, &state, &Job::new(), |state, _, _| {
         eprintln!("{} blocks are done", state.done());

@@ -19,18 +19,20 @@
 //! text from files fit for terminals.
 //!
 //! ```
+//! use std::sync::Arc;
+//!
 //! use tautline::engine::{Engine, Job, Reference};
 //! use tautline::scene::{Model, Scene};
 //! use tautline::trace::{Trace, settle};
 //!
 //! // One wall, the anchor south of it; the free end goes round its eastern end and comes to rest north of it.
 //! let scene = Scene::new([[[-1.0, 0.0].into(), [1.0, 0.0].into()]])?;
-//! let model = Model::new(scene, Some([0.0, -1.0].into()))?;
+//! let model = Arc::new(Model::new(scene, Some([0.0, -1.0].into()))?);
 //! let points = [[0.0, -0.5], [1.5, -0.5], [1.5, 0.5], [0.0, 0.5]].map(Into::into).to_vec();
 //! let settled = settle(&model, &Trace { id: 0, points });
 //! assert!(settled.violation().is_none());
 //!
-//! let records = Reference::new(&model).evaluate(&[settled], &Job::new())?;
+//! let records = Reference::new(model.clone()).evaluate(&[settled], &Job::new())?;
 //! assert_eq!(records[0].wraps.len(), 1);
 //! assert_eq!(records[0].wraps[0].0, [1.0, 0.0].into());
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -31,8 +31,8 @@ const TRIANGLES_A_LIST: usize = 1 << 12;
 const FURTHER: f64 = 2.0;
 
 /// Which vertices each pivot's queries try.
-pub struct Lists<'m> {
-    model: &'m Model,
+pub struct Lists {
+    model: Arc<Model>,
     frame: Frame,
     keep_all: bool,
     budget: usize,
@@ -64,12 +64,13 @@ struct Entry {
     furthest: AtomicU64,
 }
 
-impl<'m> Lists<'m> {
+impl Lists {
     /// Lists of what each pivot sees, of which none is made yet.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: Arc<Model>) -> Self {
+        let entries = (0..=model.vertices().len()).map(|_| Entry::default()).collect();
         Lists {
+            frame: Frame::new(&model),
             model,
-            frame: Frame::new(model),
             keep_all: false,
             budget: LISTS_BUDGET,
             worth: WORTH_A_LIST,
@@ -78,7 +79,7 @@ impl<'m> Lists<'m> {
             visibility: OnceLock::new(),
             all: OnceLock::new(),
             remaining: OnceLock::new(),
-            entries: (0..=model.vertices().len()).map(|_| Entry::default()).collect(),
+            entries,
             bytes: AtomicUsize::new(0),
             made: AtomicU64::new(0),
             looks: Mutex::new(Vec::new()),
@@ -152,8 +153,8 @@ impl<'m> Lists<'m> {
     }
 
     /// The model whose vertices are listed.
-    pub fn model(&self) -> &'m Model {
-        self.model
+    pub fn model(&self) -> &Model {
+        &self.model
     }
 
     /// The frame of the lists' coordinates.
@@ -174,7 +175,7 @@ impl<'m> Lists<'m> {
     /// The list of all vertices, for traces that cross walls.
     pub fn all(&self) -> &Arc<List> {
         let all = 0..self.model.vertices().len() as u32;
-        self.all.get_or_init(|| Arc::new(List::of_any(self.model, &self.frame, all)))
+        self.all.get_or_init(|| Arc::new(List::of_any(&self.model, &self.frame, all)))
     }
 
     /// The list of all vertices at which a rope can turn whose free end keeps to the rules and goes no further than
@@ -185,7 +186,7 @@ impl<'m> Lists<'m> {
             let visibility = if self.keep_all { None } else { self.visibility() };
             let left_out = |remaining: &Vec<u32>| remaining.len() < self.model.vertices().len();
             match visibility.map(Visibility::listed).filter(left_out) {
-                Some(remaining) => Arc::new(List::of_any(self.model, &self.frame, remaining.into_iter())),
+                Some(remaining) => Arc::new(List::of_any(&self.model, &self.frame, remaining.into_iter())),
                 None => Arc::clone(self.all()),
             }
         })
@@ -286,8 +287,8 @@ impl<'m> Lists<'m> {
 
     fn visibility(&self) -> Option<&Visibility> {
         let made = || match self.reach {
-            Some(reach) => Visibility::within(self.model, reach),
-            None => Visibility::new(self.model),
+            Some(reach) => Visibility::within(&self.model, reach),
+            None => Visibility::new(&self.model),
         };
         self.visibility.get_or_init(|| made().map(Visibility::only_required)).as_ref()
     }
@@ -306,7 +307,7 @@ impl<'m> Lists<'m> {
             visibility.look_into(pivot, octagon(at, reach.sqrt()), most, &mut scratch, &mut seen)
         };
         let list = match looked {
-            Some(_) => Arc::new(List::about(self.model, &self.frame, at, reach, &seen)),
+            Some(_) => Arc::new(List::about(&self.model, &self.frame, at, reach, &seen)),
             None => Arc::clone(self.remaining()),
         };
         pool().push((scratch, seen));

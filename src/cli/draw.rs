@@ -1,6 +1,7 @@
 //! `tautline draw`.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use anyhow::anyhow;
 use tautline::engine::{Cpu, Engine, Job};
@@ -57,10 +58,10 @@ fn draw(args: &Args, target: &Target) -> Result<(), Failure> {
             Some(_) => write(target, &Drawing::new(&args.input.tie(scene)?), &args.look),
         };
     }
-    let model = args.input.model()?;
+    let model = Arc::new(args.input.model()?);
     let settled = traces(args, &model)?;
     args.input.violations().take(&settled)?;
-    let records = Cpu::new(&model).evaluate(&settled, &Job::new())?;
+    let records = Cpu::new(model.clone()).evaluate(&settled, &Job::new())?;
     write(target, &drawing(&model, &settled, &records), &args.look)
 }
 

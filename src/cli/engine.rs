@@ -1,5 +1,7 @@
 //! Choosing what computes the ropes.
 
+use std::sync::Arc;
+
 use anyhow::anyhow;
 use clap::ValueEnum;
 use tautline::engine::{Cpu, Engine, FastGpu, Funnel, Gpu, Note, Precision, Reference, WINDOW};
@@ -66,7 +68,7 @@ pub(super) fn of_studies(arg: clap::Arg) -> clap::Arg {
 }
 
 /// An engine, and in words what it runs on.
-type Opened<'m> = (Box<dyn Engine + 'm>, String);
+type Opened = (Box<dyn Engine>, String);
 
 impl EngineArgs {
     /// The precision asked for, if one was.
@@ -78,7 +80,7 @@ impl EngineArgs {
     }
 
     /// Opens the engine asked for; says on stderr what was chosen where there was a choice.
-    pub(crate) fn open<'m>(&self, model: &'m Model) -> Result<Opened<'m>, Failure> {
+    pub(crate) fn open(&self, model: &Arc<Model>) -> Result<Opened, Failure> {
         self.open_for(self.precision().unwrap_or_default(), model)
     }
 
@@ -97,7 +99,7 @@ impl EngineArgs {
     }
 
     /// Opens the engine asked for, with a precision that was settled elsewhere.
-    pub(crate) fn open_for<'m>(&self, precision: Precision, model: &'m Model) -> Result<Opened<'m>, Failure> {
+    pub(crate) fn open_for(&self, precision: Precision, model: &Arc<Model>) -> Result<Opened, Failure> {
         self.check(precision)?;
         let one_thread = || "one thread".to_owned();
         match (self.engine, &self.adapter) {
@@ -118,21 +120,21 @@ impl EngineArgs {
                 self.cpu(model)
             })),
             (EngineName::Cpu, None) => Ok(self.cpu(model)),
-            (EngineName::Reference, None) => Ok((Box::new(Reference::new(model)), one_thread())),
-            (EngineName::Funnel, None) => Ok((Box::new(Funnel::new(model)), threads())),
-            (EngineName::Note, None) => Ok((Box::new(Note::new(model)), one_thread())),
+            (EngineName::Reference, None) => Ok((Box::new(Reference::new(model.clone())), one_thread())),
+            (EngineName::Funnel, None) => Ok((Box::new(Funnel::new(model.clone())), threads())),
+            (EngineName::Note, None) => Ok((Box::new(Note::new(model.clone())), one_thread())),
         }
     }
 
-    fn gpu<'m>(&self, choice: &AdapterChoice, precision: Precision, model: &'m Model) -> Result<Opened<'m>, GpuError> {
+    fn gpu(&self, choice: &AdapterChoice, precision: Precision, model: &Arc<Model>) -> Result<Opened, GpuError> {
         let device = Device::open(choice)?;
         let on = device.summary().to_string();
         let notes = notes(choice, &device);
         let engine: Box<dyn Engine> = match (precision, self.keep_all) {
-            (Precision::Certified, false) => Box::new(Gpu::new(device, model)?.window(self.window())),
-            (Precision::Certified, true) => Box::new(Gpu::new(device, model)?.window(self.window()).keep_all()),
-            (Precision::Fast, false) => Box::new(FastGpu::new(device, model)?.window(self.window())),
-            (Precision::Fast, true) => Box::new(FastGpu::new(device, model)?.window(self.window()).keep_all()),
+            (Precision::Certified, false) => Box::new(Gpu::new(device, model.clone())?.window(self.window())),
+            (Precision::Certified, true) => Box::new(Gpu::new(device, model.clone())?.window(self.window()).keep_all()),
+            (Precision::Fast, false) => Box::new(FastGpu::new(device, model.clone())?.window(self.window())),
+            (Precision::Fast, true) => Box::new(FastGpu::new(device, model.clone())?.window(self.window()).keep_all()),
         };
         say!("engine: gpu on {on}");
         notes.iter().for_each(|note| say!("{note}"));
@@ -142,8 +144,8 @@ impl EngineArgs {
         Ok((engine, on))
     }
 
-    fn cpu<'m>(&self, model: &'m Model) -> Opened<'m> {
-        let mut engine = Cpu::new(model).window(self.window());
+    fn cpu(&self, model: &Arc<Model>) -> Opened {
+        let mut engine = Cpu::new(model.clone()).window(self.window());
         if self.keep_all {
             engine = engine.keep_all();
         }

@@ -41,6 +41,7 @@ pub(crate) fn run(scene: &Path, queries: &Path, out: Option<&Path>, as_json: boo
     let job = Job::new();
     let answer = |driver: &mut Driver<'_>, (row, query): (usize, &Query)| -> Result<Answer, Failure> {
         let model = first.tied(query.ends()[0]).map_err(|error| Failure::input(anyhow!("{error}")))?;
+        let model = Arc::new(model);
         let drive = driver.drive(query, &model).ok_or_else(|| {
             let ([x, y], [to_x, to_y]) = (query.start, query.goal);
             let what = format!("query {row}: there is no way from cell ({x}, {y}) to cell ({to_x}, {to_y})");
@@ -51,7 +52,7 @@ pub(crate) fn run(scene: &Path, queries: &Path, out: Option<&Path>, as_json: boo
             return Err(Failure::input(anyhow!("{}: query {row}: {violation}", queries.display())));
         }
         // A query comes once, so lists of what its pivots see would not pay.
-        let record = Cpu::new(&model).keep_all().evaluate(&[settled], &job)?.remove(0);
+        let record = Cpu::new(model.clone()).keep_all().evaluate(&[settled], &job)?.remove(0);
         Ok(Answer { query: *query, straight: drive.straight, octile: drive.octile, record })
     };
     let answers: Vec<Answer> =

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::course::Course;
+use super::windows::Windows;
 use super::{Engine, EngineError, Job, Phase, WINDOW};
 use crate::candidates::{List, Lists, ROOM, Simd, Slopes};
 use crate::rope::TraceRecord;
@@ -19,20 +19,20 @@ const TELL: usize = 1 << 12;
 const RECENT: usize = 256;
 
 /// Evaluates traces on all cores, for one model.
-pub struct Cpu<'m> {
-    lists: Lists<'m>,
+pub struct Cpu {
+    lists: Lists,
     window: usize,
     simd: Simd,
 }
 
-impl<'m> Cpu<'m> {
+impl Cpu {
     /// An engine for `model`.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: Arc<Model>) -> Self {
         Self::with_lists(Lists::new(model))
     }
 
     /// An engine that tries the vertices of `lists`.
-    pub fn with_lists(lists: Lists<'m>) -> Self {
+    pub fn with_lists(lists: Lists) -> Self {
         Cpu { lists, window: WINDOW, simd: Simd::detected() }
     }
 
@@ -59,12 +59,12 @@ impl<'m> Cpu<'m> {
     }
 
     /// The lists that it has made so far.
-    pub fn lists(&self) -> &Lists<'m> {
+    pub fn lists(&self) -> &Lists {
         &self.lists
     }
 }
 
-impl Engine for Cpu<'_> {
+impl Engine for Cpu {
     fn name(&self) -> &'static str {
         "cpu"
     }
@@ -76,7 +76,7 @@ impl Engine for Cpu<'_> {
         let this = &*self;
         let lane = || Lane {
             engine: this,
-            course: Course::new(),
+            windows: Windows::new(),
             slopes: Slopes::default(),
             scratch: Scratch::default(),
             found: Vec::new(),
@@ -95,9 +95,9 @@ impl Engine for Cpu<'_> {
 }
 
 /// What evaluates one trace after the other.
-struct Lane<'e, 'm> {
-    engine: &'e Cpu<'m>,
-    course: Course,
+struct Lane<'e> {
+    engine: &'e Cpu,
+    windows: Windows,
     slopes: Slopes,
     scratch: Scratch,
     /// The candidates of the current window.
@@ -107,35 +107,35 @@ struct Lane<'e, 'm> {
     recent: [Option<(u32, Arc<List>)>; RECENT],
 }
 
-impl Lane<'_, '_> {
+impl Lane<'_> {
     fn evaluate(&mut self, trace: &SettledTrace, job: &Job) -> Result<TraceRecord, EngineError> {
         let Cpu { lists, window, simd } = self.engine;
         let model = lists.model();
-        self.course.start(model, trace);
+        self.windows.start(model, trace);
         let (mut told, mut tests) = (0, 0);
         loop {
-            if let Some(record) = self.course.finished(trace) {
-                job.count(trace.step(self.course.at()) - told);
+            if let Some(record) = self.windows.finished(trace) {
+                job.count(trace.step(self.windows.at()) - told);
                 job.count_tests(tests as u64);
                 return Ok(record);
             }
             job.go_on()?;
-            let step = trace.step(self.course.at());
+            let step = trace.step(self.windows.at());
             if step - told >= TELL {
                 job.count(step - told);
                 told = step;
             }
             let query =
-                job.time(Phase::Queries, || self.course.ask(lists.frame(), trace, *window, *simd, &mut self.slopes));
+                job.time(Phase::Queries, || self.windows.ask(lists.frame(), trace, *window, *simd, &mut self.slopes));
             if trace.breaks_rules() {
                 // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
-                let before = self.course.at();
-                self.course.try_all(model, trace);
-                tests += (self.course.at() - before) * model.vertices().len();
+                let before = self.windows.at();
+                self.windows.try_all(model, trace);
+                tests += (self.windows.at() - before) * model.vertices().len();
                 continue;
             }
-            let pivot = self.course.pivot(model);
-            let squared = self.course.squared(trace);
+            let pivot = self.windows.pivot(model);
+            let squared = self.windows.squared(trace);
             let serves = |(of, list): &&(u32, Arc<List>)| *of == pivot && list.reaches(squared);
             let list = &mut self.recent[pivot as usize % RECENT];
             if list.as_ref().filter(serves).is_none()
@@ -152,10 +152,10 @@ impl Lane<'_, '_> {
                 }
                 None => lists.look_into(pivot, &query, *simd, &mut self.scratch, &mut self.found),
             });
-            if self.found.len() > ROOM && self.course.narrow() {
+            if self.found.len() > ROOM && self.windows.narrow() {
                 continue;
             }
-            job.time(Phase::Update, || self.course.go_on(model, trace, &self.found, *simd, &self.slopes));
+            job.time(Phase::Update, || self.windows.go_on(model, trace, &self.found, *simd, &self.slopes));
         }
     }
 }

@@ -1,5 +1,7 @@
 //! One rope, step by step as its free end moves: for loops that cannot wait for the end of a trace.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use crate::candidates::Lists;
@@ -19,7 +21,7 @@ use crate::trace::{Trace, settle};
 ///
 /// let scene = Scene::new([[[-1.0, 0.0].into(), [1.0, 0.0].into()]])?;
 /// let model = Model::new(scene, Some([0.0, -1.0].into()))?;
-/// let mut rope = LiveRope::new(&model);
+/// let mut rope = LiveRope::new(model.into());
 /// rope.advance([2.0, -1.0].into())?;
 /// assert_eq!(rope.advance([2.0, 1.0].into())?.len(), 1);
 /// // Towards the wall's end.
@@ -30,8 +32,8 @@ use crate::trace::{Trace, settle};
 /// assert_eq!(rope.free_end(), [2.0, 1.0].into());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct LiveRope<'m> {
-    lists: Lists<'m>,
+pub struct LiveRope {
+    lists: Lists,
     rope: Rope,
     at: TracePoint,
     /// Of the last move.
@@ -77,14 +79,15 @@ pub enum AdvanceError {
     },
 }
 
-impl<'m> LiveRope<'m> {
+impl LiveRope {
     /// A rope whose free end is at the model's anchor. O(n log n) for n wall ends: what each pivot sees is found with the help
     /// of a triangulation.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: Arc<Model>) -> Self {
         let lists = Lists::new(model).after(0);
         // Made now rather than in the first move.
         let _ = lists.keeps_all();
-        LiveRope { lists, rope: Rope::new(model.anchor()), at: TracePoint::from(model.anchor()), events: Vec::new() }
+        let anchor = lists.model().anchor();
+        LiveRope { lists, rope: Rope::new(anchor), at: TracePoint::from(anchor), events: Vec::new() }
     }
 
     /// Moves the free end straight to `to` and returns what happened to the rope, in order. O(vertices that the pivot sees

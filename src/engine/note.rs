@@ -2,9 +2,11 @@
 //! the first crossing in list order. It is wrong on collinear walls, on several wraps in one step, and on rounding; it is
 //! kept to be measured, not to be used. So is the note's remedy for walls on one line.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
-use super::walk::Walk;
+use super::progress::Progress;
 use super::{Engine, EngineError, Job, Precision};
 use crate::rope::{EventKind, Side, TraceRecord};
 use crate::scene::Model;
@@ -15,15 +17,15 @@ use crate::trace::SettledTrace;
 const INF: f64 = 1e9;
 
 /// Listing 1 of the note. O(obstacle points) a step, on one thread.
-#[derive(Clone, Copy)]
-pub struct Note<'m> {
-    model: &'m Model,
+#[derive(Clone)]
+pub struct Note {
+    model: Arc<Model>,
     furthest: bool,
 }
 
-impl<'m> Note<'m> {
+impl Note {
     /// An engine for `model`.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: Arc<Model>) -> Self {
         Note { model, furthest: false }
     }
 
@@ -39,7 +41,7 @@ impl<'m> Note<'m> {
 /// A ray as the listing has it: a segment to a far point.
 type Ray = (DVec2, DVec2);
 
-impl Engine for Note<'_> {
+impl Engine for Note {
     fn name(&self) -> &'static str {
         "note"
     }
@@ -49,25 +51,25 @@ impl Engine for Note<'_> {
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        let model = self.model;
+        let model = &*self.model;
         // The flattened list of the obstacle segments' ends: a shared end stands in it once a segment.
         let obstacle_points: Vec<(u32, DVec2)> =
             model.scene().walls().iter().flatten().map(|&v| (v, model.vertices()[v as usize])).collect();
         let listing = Listing { anchor: model.anchor(), obstacle_points: &obstacle_points, furthest: self.furthest };
-        let mut walk = Walk::new();
+        let mut progress = Progress::new();
         let mut records = Vec::with_capacity(traces.len());
         for trace in traces {
-            walk.start(model, trace);
+            progress.start(model, trace);
             let mut unwrapping_ray = (DVec2::ZERO, DVec2::ZERO);
-            while !walk.is_done(trace) {
+            while !progress.is_done(trace) {
                 job.go_on()?;
-                listing.step(&mut walk, trace, &mut unwrapping_ray);
-                let before = trace.step(walk.at);
-                walk.arrive(trace);
-                job.count(trace.step(walk.at) - before);
+                listing.step(&mut progress, trace, &mut unwrapping_ray);
+                let before = trace.step(progress.at);
+                progress.arrive(trace);
+                job.count(trace.step(progress.at) - before);
                 job.count_tests(obstacle_points.len() as u64);
             }
-            records.push(walk.record(trace));
+            records.push(progress.record(trace));
         }
         Ok(records)
     }
@@ -82,9 +84,9 @@ struct Listing<'a> {
 
 impl Listing<'_> {
     /// One turn of the listing's outer loop.
-    fn step(&self, walk: &mut Walk, trace: &SettledTrace, unwrapping_ray: &mut Ray) {
-        let [a0, a] = [walk.at, walk.at + 1].map(|i| trace.points()[i]);
-        let last = walk.rope.pivot();
+    fn step(&self, progress: &mut Progress, trace: &SettledTrace, unwrapping_ray: &mut Ray) {
+        let [a0, a] = [progress.at, progress.at + 1].map(|i| trace.points()[i]);
+        let last = progress.rope.pivot();
         for (i, &(vertex, point)) in self.obstacle_points.iter().enumerate() {
             if point == last {
                 continue;
@@ -95,15 +97,15 @@ impl Listing<'_> {
                 *unwrapping_ray = ray(last, point);
                 // The listing keeps no sides: the side is the way in which the trace passes the ray.
                 let side = Side::of(ccw(last, point, a));
-                walk.rope.push(vertex, point, side);
-                walk.note(trace, EventKind::Wrap, vertex, side);
+                progress.rope.push(vertex, point, side);
+                progress.note(trace, EventKind::Wrap, vertex, side);
                 return;
             }
-            if !walk.rope.contacts().is_empty() && intersect(a0, a, *unwrapping_ray) {
-                if let Some(c) = walk.rope.pop() {
-                    walk.note(trace, EventKind::Unwrap, c.vertex, c.side);
+            if !progress.rope.contacts().is_empty() && intersect(a0, a, *unwrapping_ray) {
+                if let Some(c) = progress.rope.pop() {
+                    progress.note(trace, EventKind::Unwrap, c.vertex, c.side);
                 }
-                *unwrapping_ray = match walk.rope.contacts() {
+                *unwrapping_ray = match progress.rope.contacts() {
                     [] => (DVec2::ZERO, DVec2::ZERO),
                     [only] => ray(self.anchor, only.at),
                     [.., prior, last] => ray(prior.at, last.at),

@@ -1,44 +1,46 @@
 //! The arbiter: scalar, one trace and one step after the other, every vertex tried at every step, exact predicates.
 
-use super::walk::Walk;
+use std::sync::Arc;
+
+use super::progress::Progress;
 use super::{Engine, EngineError, Job};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 /// The engine that all others are checked against. O(vertices) for each step and each event, on one thread.
-#[derive(Clone, Copy)]
-pub struct Reference<'m> {
-    model: &'m Model,
+#[derive(Clone)]
+pub struct Reference {
+    model: Arc<Model>,
 }
 
-impl<'m> Reference<'m> {
+impl Reference {
     /// An engine for `model`.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: Arc<Model>) -> Self {
         Reference { model }
     }
 }
 
-impl Engine for Reference<'_> {
+impl Engine for Reference {
     fn name(&self) -> &'static str {
         "reference"
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        let model = self.model;
+        let model = &*self.model;
         let all = 0..model.vertices().len() as u32;
-        let mut walk = Walk::new();
+        let mut progress = Progress::new();
         let mut records = Vec::with_capacity(traces.len());
         for trace in traces {
-            walk.start(model, trace);
-            while !walk.is_done(trace) {
+            progress.start(model, trace);
+            while !progress.is_done(trace) {
                 job.go_on()?;
-                let before = trace.step(walk.at);
-                walk.next(model, trace, all.clone());
-                job.count(trace.step(walk.at) - before);
+                let before = trace.step(progress.at);
+                progress.next(model, trace, all.clone());
+                job.count(trace.step(progress.at) - before);
                 job.count_tests(all.len() as u64);
             }
-            records.push(walk.record(trace));
+            records.push(progress.record(trace));
         }
         Ok(records)
     }

@@ -1,8 +1,7 @@
 //! How far the engines that promise nothing are off in [extreme cases](crate::example::extremes).
 
-use std::fmt;
-
 use rayon::prelude::*;
+use std::fmt;
 
 use crate::engine::{Cpu, Engine, EngineError, FastGpu, Job, Note};
 use crate::example::extremes::{Extreme, FAMILIES, Family};
@@ -54,16 +53,16 @@ pub fn errors(device: &Device, job: &Job) -> Result<Vec<Errors>, EngineError> {
         for case in family.cases() {
             let model = case.model();
             let traces = settled(&model, &case);
-            let truth = Cpu::new(&model).evaluate(&traces, job)?;
+            let truth = Cpu::new(model.clone()).evaluate(&traces, job)?;
             if truth.iter().any(|record| record.events.len() > LONGEST_CHAIN) {
                 fast.left_out += 1;
             } else {
-                match FastGpu::new(device.clone(), &model) {
+                match FastGpu::new(device.clone(), model.clone()) {
                     Ok(mut engine) => fast.add(&truth, &engine.evaluate(&traces, job)?),
                     Err(error) => fast.refuse(error.to_string()),
                 }
             }
-            note.add(&truth, &Note::new(&model).evaluate(&traces, job)?);
+            note.add(&truth, &Note::new(model.clone()).evaluate(&traces, job)?);
         }
         lines.extend([fast, note]);
     }
@@ -143,7 +142,7 @@ mod tests {
                 .into(),
         };
         let model = case.model();
-        let truth = Reference::new(&model).evaluate(&settled(&model, &case), &Job::new()).unwrap();
+        let truth = Reference::new(model.clone()).evaluate(&settled(&model, &case), &Job::new()).unwrap();
         let mut errors = Errors::none("note", FAMILIES[2]);
         errors.add(&truth, &truth);
         assert_eq!(

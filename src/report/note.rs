@@ -1,5 +1,7 @@
 //! How often the note's listing goes wrong.
 
+use std::sync::Arc;
+
 use crate::engine::{Cpu, Engine, EngineError, Job, Note};
 use crate::example::{Walker, settled_walks};
 use crate::rope::{Side, TraceRecord, replay};
@@ -30,16 +32,18 @@ pub struct NoteErrors {
 /// use tautline::report::note_errors;
 /// use tautline::scene::Model;
 ///
-/// let model = Model::new(BuiltIn::Lattice(60).scene(1), None)?;
+/// let model = Model::new(BuiltIn::Lattice(60).scene(1), None)?.into();
 /// let [listing, _] = note_errors(&model, Walker { step: 0.5, steps: 100, seed: 1 }, 20)?;
 /// assert!(listing.traces > 0 && listing.traces <= 20);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn note_errors(model: &Model, walker: Walker, traces: u64) -> Result<[NoteErrors; 2], EngineError> {
+pub fn note_errors(model: &Arc<Model>, walker: Walker, traces: u64) -> Result<[NoteErrors; 2], EngineError> {
     let walks = settled_walks(model, walker, traces);
-    let right = Cpu::new(model).evaluate(&walks, &Job::new())?;
+    let right = Cpu::new(model.clone()).evaluate(&walks, &Job::new())?;
     let mut errors = [NoteErrors::default(); 2];
-    for (mut engine, errors) in [Note::new(model), Note::new(model).furthest()].into_iter().zip(&mut errors) {
+    for (mut engine, errors) in
+        [Note::new(model.clone()), Note::new(model.clone()).furthest()].into_iter().zip(&mut errors)
+    {
         let given = engine.evaluate(&walks, &Job::new())?;
         for ((walk, right), given) in walks.iter().zip(&right).zip(&given) {
             let (right, given) = (ropes(model, walk, right), ropes(model, walk, given));

@@ -100,8 +100,8 @@ mod tests {
 
     #[test]
     fn every_step_has_the_rope_of_the_trace_that_ends_there() {
-        let model = Model::new(floor_plan(), None).unwrap();
-        let mut reference = Reference::new(&model);
+        let model = std::sync::Arc::new(Model::new(floor_plan(), None).unwrap());
+        let mut reference = Reference::new(model.clone());
         let mut all_events = 0;
         // Long steps, so that one has several events.
         for trace in walks(&model, Walker { step: 2.0, steps: 60, seed: 5 }, 12) {

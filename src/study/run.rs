@@ -82,7 +82,7 @@ enum Tallied {
 /// If there are not as many engines as anchors, or a thread panicked that held the state.
 pub fn run<E: Send>(
     study: &Study,
-    engines: &mut [Box<dyn Engine + '_>],
+    engines: &mut [Box<dyn Engine>],
     state: &Mutex<State>,
     job: &Job,
     after: impl FnMut(&mut State, Vec<TraceRecord>, usize) -> Result<(), E>,
@@ -94,7 +94,7 @@ pub fn run<E: Send>(
 /// The same with groups of at most `size` traces.
 fn in_groups<E: Send>(
     study: &Study,
-    engines: &mut [Box<dyn Engine + '_>],
+    engines: &mut [Box<dyn Engine>],
     state: &Mutex<State>,
     job: &Job,
     size: u64,
@@ -162,7 +162,7 @@ fn in_groups<E: Send>(
 /// If there are not as many engines as anchors, or not so many places.
 pub fn run_again<E: Send>(
     study: &Study,
-    engines: &mut [Box<dyn Engine + '_>],
+    engines: &mut [Box<dyn Engine>],
     shard: Shard,
     places: Range<u64>,
     job: &Job,
@@ -179,7 +179,7 @@ pub fn run_again<E: Send>(
 /// and given to `each`, with how many seconds were waited for it and how long evaluating took.
 fn groups<E: Send>(
     study: &Study,
-    engines: &mut [Box<dyn Engine + '_>],
+    engines: &mut [Box<dyn Engine>],
     (shard, places, size): (Shard, Range<u64>, u64),
     job: &Job,
     mut each: impl FnMut(Group, Vec<TraceRecord>, [f64; 2]) -> Result<ControlFlow<()>, RunError<E>>,
@@ -252,7 +252,7 @@ fn tally(
 }
 
 /// How many traces are worked on at once: enough for the engines, whole blocks if that can be, and not too many points.
-fn group_size(study: &Study, engines: &[Box<dyn Engine + '_>]) -> u64 {
+fn group_size(study: &Study, engines: &[Box<dyn Engine>]) -> u64 {
     let batch = engines.iter().map(|engine| engine.batch()).max().unwrap_or(1);
     let block = u64::from(study.plan().run.block);
     let steps = study.plan().walk.steps().map_or(1024, u64::from);
@@ -305,7 +305,7 @@ impl Drawing<'_> {
 /// The records of all traces, in their order. Each is evaluated by the engine of its anchor.
 fn evaluate(
     study: &Study,
-    engines: &mut [Box<dyn Engine + '_>],
+    engines: &mut [Box<dyn Engine>],
     traces: &mut Vec<SettledTrace>,
     job: &Job,
 ) -> Result<Vec<TraceRecord>, EngineError> {

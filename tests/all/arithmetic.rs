@@ -1,5 +1,7 @@
 //! What a device makes of f32: the software adapter is fit for exact ropes, and one that is not is refused for them.
 
+use std::sync::Arc;
+
 use tautline::engine::{FastGpu, Gpu};
 use tautline::example::floor_plan;
 use tautline::gpu::{Arithmetic, Computed, GpuError, PROBE_WGSL};
@@ -44,14 +46,14 @@ const FAULTS: [(&str, &str, &str); 8] = [
 
 #[test]
 fn a_device_with_other_arithmetic_is_refused_for_exact_ropes() {
-    let model = Model::new(floor_plan(), None).unwrap();
+    let model = Arc::new(Model::new(floor_plan(), None).unwrap());
     for (right, wrong, what) in FAULTS {
         assert_eq!(PROBE_WGSL.matches(right).count(), 1, "{right:?}");
         let device = software().probed(&PROBE_WGSL.replace(right, wrong)).unwrap();
-        let Err(error) = Gpu::new(device.clone(), &model) else { panic!("{wrong} was taken") };
+        let Err(error) = Gpu::new(device.clone(), model.clone()) else { panic!("{wrong} was taken") };
         assert!(matches!(error, GpuError::Unfit { .. }) && error.to_string().contains(what), "{error}");
         assert!(error.to_string().ends_with("Take another adapter, the engine cpu, or precision fast"), "{error}");
-        FastGpu::new(device, &model).unwrap();
+        FastGpu::new(device, model.clone()).unwrap();
     }
 }
 

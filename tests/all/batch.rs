@@ -1,5 +1,7 @@
 //! The batch pipeline at its edges, and on real scenes: always the reference's records, event for event.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use tautline::candidates::{LISTS_BUDGET, Lists, Query, ROOM, Simd};
 use tautline::engine::{Cpu, Engine, EngineError, Funnel, Gpu, Job, Note, Reference};
@@ -16,27 +18,27 @@ fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
 }
 
 /// The `gpu` engine with rounds of a given number of queries, that asks the GPU about every pivot.
-fn gpu(model: &Model, queries: usize) -> Gpu<'_> {
+fn gpu(model: &Arc<Model>, queries: usize) -> Gpu {
     let tuning = Tuning { queries, workgroup: 64 };
-    Gpu::with(software(), Lists::new(model).after(0), LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
+    Gpu::with(software(), Lists::new(model.clone()).after(0), LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
 }
 
 fn settled(model: &Model, traces: &[Trace]) -> Vec<SettledTrace> {
     traces.iter().map(|t| settle(model, t)).collect()
 }
 
-fn example(walker: Walker, count: u64) -> (Model, Vec<SettledTrace>) {
-    let model = Model::new(floor_plan(), None).unwrap();
+fn example(walker: Walker, count: u64) -> (Arc<Model>, Vec<SettledTrace>) {
+    let model = Arc::new(Model::new(floor_plan(), None).unwrap());
     let traces = settled(&model, &walks(&model, walker, count));
     (model, traces)
 }
 
 /// Compares both batch engines with the reference, which must have met events for that to mean anything.
-fn agree(model: &Model, traces: &[SettledTrace]) {
-    let truth = run(&mut Reference::new(model), traces);
+fn agree(model: &Arc<Model>, traces: &[SettledTrace]) {
+    let truth = run(&mut Reference::new(model.clone()), traces);
     assert!(truth.iter().any(|r| r.events.len() > 4), "nothing happened to compare");
-    assert_eq!(run(&mut Cpu::new(model), traces), truth);
-    assert_eq!(run(&mut Gpu::new(software(), model).unwrap(), traces), truth);
+    assert_eq!(run(&mut Cpu::new(model.clone()), traces), truth);
+    assert_eq!(run(&mut Gpu::new(software(), model.clone()).unwrap(), traces), truth);
     assert_eq!(run(&mut gpu(model, 1 << 13), traces), truth);
 }
 
@@ -47,7 +49,7 @@ fn batches_larger_than_the_slots() {
     for (i, short) in walks(&model, Walker { step: 0.3, steps: 7, seed: 6 }, 40).into_iter().enumerate() {
         traces.insert(i * 2, settle(&model, &short));
     }
-    let truth = run(&mut Reference::new(&model), &traces);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
     for slots in [1, 3, 79, 80, 81] {
         assert_eq!(run(&mut gpu(&model, slots), &traces), truth, "{slots} slots");
     }
@@ -57,7 +59,7 @@ fn batches_larger_than_the_slots() {
 fn one_engine_serves_batch_after_batch() {
     let (model, traces) = example(Walker { step: 0.3, steps: 100, seed: 7 }, 20);
     let mut engine = gpu(&model, 16);
-    let truth = run(&mut Reference::new(&model), &traces);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
     assert_eq!(run(&mut engine, &traces[..3]), truth[..3]);
     assert_eq!(run(&mut engine, &traces), truth);
 }
@@ -66,7 +68,7 @@ fn one_engine_serves_batch_after_batch() {
 #[test]
 fn the_funnel_of_a_trace_does_not_depend_on_the_others() {
     let (model, traces) = example(Walker { step: 0.3, steps: 200, seed: 9 }, 60);
-    for mut engine in [Funnel::new(&model), Funnel::new(&model).final_only()] {
+    for mut engine in [Funnel::new(model.clone()), Funnel::new(model.clone()).final_only()] {
         let alone: Vec<_> = traces.iter().map(|t| run(&mut engine, std::slice::from_ref(t)).remove(0)).collect();
         assert!(alone.iter().any(|r| r.events.len() > 4), "nothing happened to compare");
         let backwards: Vec<_> = traces.iter().rev().cloned().collect();
@@ -88,11 +90,11 @@ fn the_funnels_frame_grows_with_the_traces() {
         let points = points.iter().map(|&p| model.anchor() + size * DVec2::from(p)).collect();
         settle(&model, &Trace { id: 0, points })
     };
-    let mut engine = Funnel::new(&model);
+    let mut engine = Funnel::new(model.clone());
     for batch in [&traces[..], &[out(1e2)], &[out(1e9)], &traces, &[out(1e3)]] {
         let records = run(&mut engine, batch);
-        assert_eq!(records, run(&mut Funnel::new(&model), batch));
-        let [truth, found] = [run(&mut Reference::new(&model), batch), records].map(|records| {
+        assert_eq!(records, run(&mut Funnel::new(model.clone()), batch));
+        let [truth, found] = [run(&mut Reference::new(model.clone()), batch), records].map(|records| {
             records.into_iter().map(|r| (r.length, r.max_length, r.wraps, r.max_depth)).collect::<Vec<_>>()
         });
         assert_eq!(found, truth);
@@ -102,10 +104,10 @@ fn the_funnels_frame_grows_with_the_traces() {
 #[test]
 fn windows_of_any_bound_change_nothing() {
     let (model, traces) = example(Walker { step: 0.2, steps: 300, seed: 8 }, 12);
-    let truth = run(&mut Reference::new(&model), &traces);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
     for window in [1, 2, 5, 64, 1000] {
         assert_eq!(run(&mut gpu(&model, 64).window(window), &traces), truth, "window {window}");
-        assert_eq!(run(&mut Cpu::new(&model).window(window), &traces), truth, "window {window}");
+        assert_eq!(run(&mut Cpu::new(model.clone()).window(window), &traces), truth, "window {window}");
     }
 }
 
@@ -115,13 +117,13 @@ fn empty_batches_and_traces_of_length_one() {
     let anchor = model.anchor();
     let one = |id, at| Trace { id, points: vec![at] };
     let traces = settled(&model, &[one(0, anchor), one(4, anchor + DVec2::new(0.5, 0.1)), one(9, anchor)]);
-    let truth = run(&mut Reference::new(&model), &traces);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
     assert_eq!(
         truth.iter().map(|r| (r.trace, r.steps, r.depth)).collect::<Vec<_>>(),
         [(0, 0, 0), (4, 0, 0), (9, 0, 0)]
     );
     assert_eq!(truth[1].length, anchor.distance(anchor + DVec2::new(0.5, 0.1)));
-    for engine in [&mut gpu(&model, 8) as &mut dyn Engine, &mut Cpu::new(&model)] {
+    for engine in [&mut gpu(&model, 8) as &mut dyn Engine, &mut Cpu::new(model.clone())] {
         assert_eq!(run(engine, &traces), truth);
         assert_eq!(run(engine, &[]), []);
     }
@@ -129,15 +131,15 @@ fn empty_batches_and_traces_of_length_one() {
 
 #[test]
 fn a_scene_without_walls() {
-    let model = Model::new(Scene::default(), Some(DVec2::new(1.0, 2.0))).unwrap();
+    let model = Arc::new(Model::new(Scene::default(), Some(DVec2::new(1.0, 2.0))).unwrap());
     let points = vec![DVec2::new(4.0, 6.0), DVec2::new(1.0, 3.0)];
     let traces = settled(&model, &[Trace { id: 0, points }]);
     for engine in [
         &mut gpu(&model, 8) as &mut dyn Engine,
-        &mut Cpu::new(&model),
-        &mut Reference::new(&model),
-        &mut Funnel::new(&model),
-        &mut Note::new(&model),
+        &mut Cpu::new(model.clone()),
+        &mut Reference::new(model.clone()),
+        &mut Funnel::new(model.clone()),
+        &mut Note::new(model.clone()),
     ] {
         let r = run(engine, &traces).remove(0);
         assert_eq!((r.length, r.max_length, r.depth, r.pull), (1.0, 5.0, 0, Some(-DVec2::Y)), "{}", engine.name());
@@ -148,17 +150,17 @@ fn a_scene_without_walls() {
 #[test]
 fn the_notes_listing_sees_one_event_a_step() {
     let wall = |x: f64| [DVec2::new(x, 0.0), DVec2::new(x, 5.0)];
-    let model = Model::new(Scene::new([wall(1.0), wall(2.0)]).unwrap(), Some(DVec2::new(0.0, 1.0))).unwrap();
+    let model = Arc::new(Model::new(Scene::new([wall(1.0), wall(2.0)]).unwrap(), Some(DVec2::new(0.0, 1.0))).unwrap());
     let events = |engine: &mut dyn Engine, points: &[[f64; 2]]| {
         let points = points.iter().copied().map(DVec2::from).collect();
         let record = run(engine, &[settle(&model, &Trace { id: 0, points })]).remove(0);
         record.events.iter().map(|e| (e.step, e.vertex)).collect::<Vec<_>>()
     };
     let slowly = [[0.0, -1.0], [1.5, -1.0], [1.5, 0.5], [1.9, -0.5], [3.0, -0.5], [3.0, 1.0]];
-    assert_eq!(events(&mut Note::new(&model), &slowly), events(&mut Reference::new(&model), &slowly));
+    assert_eq!(events(&mut Note::new(model.clone()), &slowly), events(&mut Reference::new(model.clone()), &slowly));
     let at_once = [[0.0, -1.0], [1.5, -1.5], [4.0, 0.5]];
-    assert_eq!(events(&mut Reference::new(&model), &at_once).len(), 2);
-    assert_eq!(events(&mut Note::new(&model), &at_once).len(), 1);
+    assert_eq!(events(&mut Reference::new(model.clone()), &at_once).len(), 2);
+    assert_eq!(events(&mut Note::new(model.clone()), &at_once).len(), 1);
 }
 
 /// 60 wall ends on an arc about the anchor, swept in a few steps: each step meets more than a query has room for.
@@ -166,10 +168,10 @@ fn the_notes_listing_sees_one_event_a_step() {
 fn overflowing_queries_are_evaluated_exactly() {
     let end = |k: usize, r: f64| r * DVec2::from_angle(-0.7 + 1.4 * k as f64 / 59.0);
     let walls = (0..60).map(|k| [end(k, 1.0 + 0.01 * (k % 7) as f64), end(k, 0.4)]);
-    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap();
+    let model = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap());
     let at = |turn: f64| 3.0 * DVec2::from_angle(turn);
     let points: Vec<DVec2> = vec![at(-1.2), at(-0.9), at(1.0), at(1.3), at(-1.1), at(0.1), at(-1.0)];
-    let lists = Lists::new(&model);
+    let lists = Lists::new(model.clone());
     let (simd, mut found) = (Simd::detected(), vec![]);
     let query = Query::leg(lists.frame(), model.anchor(), points[1], points[2]);
     simd.sweep(lists.all(), &query, 60 * 2, &mut found);
@@ -183,7 +185,7 @@ fn overflowing_queries_are_evaluated_exactly() {
 #[test]
 fn real_coasts() {
     let scene = read_scene(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/aegean.geojson").as_ref()).unwrap();
-    let model = Model::new(scene, None).unwrap();
+    let model = Arc::new(Model::new(scene, None).unwrap());
     for (step, steps) in [(0.5, 1000), (5.0, 200), (25.0, 100)] {
         let walker = Walker { step, steps, seed: 11 };
         agree(&model, &settled(&model, &walks(&model, walker, 20)));
@@ -197,13 +199,15 @@ fn lists_of_several_pages() {
     assert_eq!(model.vertices().len(), 20_000);
     let traces = settled(&model, &walks(&model, Walker { step: 0.8, steps: 200, seed: 2 }, 10));
     agree(&model, &traces);
-    assert_eq!(run(&mut gpu(&model, 64).keep_all(), &traces), run(&mut Reference::new(&model), &traces));
+    assert_eq!(run(&mut gpu(&model, 64).keep_all(), &traces), run(&mut Reference::new(model.clone()), &traces));
 }
 
 #[test]
 fn a_stopped_job_ends_early() {
     let (model, traces) = example(Walker { step: 0.3, steps: 100, seed: 1 }, 4);
-    for engine in [&mut gpu(&model, 2) as &mut dyn Engine, &mut Cpu::new(&model), &mut Reference::new(&model)] {
+    for engine in
+        [&mut gpu(&model, 2) as &mut dyn Engine, &mut Cpu::new(model.clone()), &mut Reference::new(model.clone())]
+    {
         let job = Job::new();
         job.stop();
         assert!(matches!(engine.evaluate(&traces, &job), Err(EngineError::Stopped)), "{}", engine.name());
@@ -215,28 +219,29 @@ fn a_stopped_job_ends_early() {
 #[test]
 fn lists_that_do_not_fit_the_budget_are_made_again() {
     // More pivots than a thread keeps at hand.
-    let model = Model::new(random_walls(1000, 1), None).unwrap();
+    let model = Arc::new(Model::new(random_walls(1000, 1), None).unwrap());
     let traces = settled(&model, &walks(&model, Walker { step: 0.02, steps: 500, seed: 9 }, 100));
-    let truth = run(&mut Reference::new(&model), &traces);
-    let mut roomy = Cpu::with_lists(Lists::new(&model).after(0));
+    let truth = run(&mut Reference::new(model.clone()), &traces);
+    let mut roomy = Cpu::with_lists(Lists::new(model.clone()).after(0));
     assert_eq!(run(&mut roomy, &traces), truth);
     let once = roomy.lists().made();
-    let mut cramped = Cpu::with_lists(Lists::new(&model).after(0).budget(1 << 14));
+    let mut cramped = Cpu::with_lists(Lists::new(model.clone()).after(0).budget(1 << 14));
     assert_eq!(run(&mut cramped, &traces), truth);
     assert!(cramped.lists().made() > 2 * once, "{} lists, with room {once}", cramped.lists().made());
     // On the device there are two blocks of three pages at least, since a list may hold all 20,000 vertices.
     let model = posts();
     let traces = settled(&model, &walks(&model, Walker { step: 0.8, steps: 100, seed: 4 }, 150));
     let tuning = Tuning { queries: 7, workgroup: 64 };
-    let mut gpu = Gpu::with(software(), Lists::new(&model).after(0).budget(1 << 14), 0, tuning, SWEEP_WGSL).unwrap();
-    assert_eq!(run(&mut gpu, &traces), run(&mut Reference::new(&model), &traces));
+    let mut gpu =
+        Gpu::with(software(), Lists::new(model.clone()).after(0).budget(1 << 14), 0, tuning, SWEEP_WGSL).unwrap();
+    assert_eq!(run(&mut gpu, &traces), run(&mut Reference::new(model.clone()), &traces));
     assert!(gpu.pass().emptied() > 2, "{} blocks were emptied", gpu.pass().emptied());
 }
 
 #[test]
 fn a_stopped_funnel_ends_early_and_one_that_is_not_counts_all_steps() {
     let (model, traces) = example(Walker { step: 0.01, steps: 5000, seed: 1 }, 3);
-    for mut engine in [Funnel::new(&model), Funnel::new(&model).final_only()] {
+    for mut engine in [Funnel::new(model.clone()), Funnel::new(model.clone()).final_only()] {
         let job = Job::new();
         job.stop();
         assert!(matches!(engine.evaluate(&traces, &job), Err(EngineError::Stopped)));
@@ -249,10 +254,10 @@ fn a_stopped_funnel_ends_early_and_one_that_is_not_counts_all_steps() {
 
 #[test]
 fn the_funnel_of_a_scene_without_walls_is_straight() {
-    let model = Model::new(Scene::default(), Some(DVec2::new(1.0, 2.0))).unwrap();
+    let model = Arc::new(Model::new(Scene::default(), Some(DVec2::new(1.0, 2.0))).unwrap());
     let points = vec![DVec2::new(4.0, 6.0), DVec2::new(1.0, 3.0)];
     let traces = settled(&model, &[Trace { id: 0, points }, Trace { id: 1, points: vec![model.anchor()] }]);
-    let records = run(&mut Funnel::new(&model), &traces);
+    let records = run(&mut Funnel::new(model.clone()), &traces);
     assert_eq!((records[0].length, records[0].max_length, records[0].pull), (1.0, 5.0, Some(-DVec2::Y)));
     assert_eq!((records[1].length, records[1].max_length, records[1].pull), (0.0, 0.0, None));
 }
@@ -264,7 +269,7 @@ fn where_all_sees_all_everything_is_tried() {
     let n = 4500;
     let turn = |k: f64| DVec2::from_angle(std::f64::consts::TAU * k / f64::from(n));
     let walls = (0..n).map(|k| [turn(f64::from(k)), 1.0001 * turn(f64::from(k))]);
-    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(0.05, 0.0))).unwrap();
+    let model = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(0.05, 0.0))).unwrap());
     let trace = |id: u64| {
         let out = (37 * id % 4500) as f64 + 0.5;
         let around = (0..12).map(|j| 1.2 * turn(out + 70.0 * f64::from(j)));
@@ -272,7 +277,7 @@ fn where_all_sees_all_everything_is_tried() {
     };
     let traces = settled(&model, &(0..12).map(trace).collect::<Vec<_>>());
     agree(&model, &traces);
-    let visible = Lists::new(&model).after(0);
+    let visible = Lists::new(model.clone()).after(0);
     assert!(visible.of(9000, f64::INFINITY).is_some_and(|list| list.len() == 9000), "the anchor does not see too much");
 }
 
@@ -284,7 +289,7 @@ fn walls_that_lie_on_each_other() {
         [DVec2::new(-x, 0.25), DVec2::new(x, 0.25)]
     });
     let walls = walls.chain([[DVec2::new(0.5, -1.0), DVec2::new(0.75, -0.5)]]);
-    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap();
+    let model = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap());
     let points =
         [[0.0, -1.5], [3.0, -1.5], [3.0, 2.0], [-3.0, 2.0], [-3.0, -2.0], [1.0, -0.5]].map(DVec2::from).to_vec();
     agree(&model, &settled(&model, &[Trace { id: 0, points }]));

@@ -1,6 +1,8 @@
 //! That the candidate pass never misses a vertex that lies in the exact swept triangle: vertices within rounding of the
 //! triangle's sides and corners, triangles of every shape and distance.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use proptest::prelude::*;
 use tautline::candidates::{Frame, Lists, Query, Simd, Slopes, Window, Wrapping};
@@ -59,7 +61,7 @@ proptest! {
             }
         }
         let walls = vertices.windows(2).map(|w| [w[0], w[1]]);
-        let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::splat(1.0))).unwrap();
+        let model = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(DVec2::splat(1.0))).unwrap());
         let frame = Frame::new(&model);
         for simd in [Simd::detected(), Simd::baseline()] {
             let mut slopes = Slopes::default();
@@ -69,7 +71,7 @@ proptest! {
                 None => (1, Query::leg(&frame, pivot, points[0], points[1])),
             };
             let mut named = vec![];
-            simd.sweep(Lists::new(&model).all(), &query, model.vertices().len(), &mut named);
+            simd.sweep(Lists::new(model.clone()).all(), &query, model.vertices().len(), &mut named);
             for leg in 0..legs {
                 let from = if leg == 0 { corners[1] } else { points[leg] };
                 for (vertex, &p) in model.vertices().iter().enumerate() {
@@ -127,10 +129,10 @@ fn legs_from_far_away_miss_nothing() {
         [p(-1.0, -1.0), p(-1.0, -0.95)],
         [p(-0.22245374810066224, -0.1611385044403076), p(-0.18958940171875, -0.16346423125)],
     ];
-    let model = Model::new(Scene::new(walls).unwrap(), Some(p(0.1069136, -0.184447))).unwrap();
+    let model = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(p(0.1069136, -0.184447))).unwrap());
     let far = [p(-1553375562843.4456, -17523470951330.07), p(1553375562843.0005, 17523470951329.748)];
     let settled = settle(&model, &Trace { id: 0, points: vec![model.anchor(), far[0], far[1]] });
-    let truth = Reference::new(&model).evaluate(std::slice::from_ref(&settled), &Job::new()).unwrap();
+    let truth = Reference::new(model.clone()).evaluate(std::slice::from_ref(&settled), &Job::new()).unwrap();
     assert_eq!(truth[0].depth, 2);
-    assert_eq!(Cpu::new(&model).evaluate(&[settled], &Job::new()).unwrap(), truth);
+    assert_eq!(Cpu::new(model.clone()).evaluate(&[settled], &Job::new()).unwrap(), truth);
 }

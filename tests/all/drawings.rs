@@ -1,6 +1,7 @@
 //! Drawings of traces and their ropes.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use glam::DVec2;
 use resvg::usvg::roxmltree::Document;
@@ -15,7 +16,7 @@ use crate::pictures::{pixels, texts};
 
 /// Walls, an anchor and traces, evaluated.
 struct Dragged {
-    model: Model,
+    model: Arc<Model>,
     traces: Vec<SettledTrace>,
     records: Vec<TraceRecord>,
 }
@@ -24,22 +25,22 @@ impl Dragged {
     fn new(walls: &[[[f64; 2]; 2]], traces: &[&[[f64; 2]]]) -> Self {
         let scene = Scene::new(walls.iter().map(|w| w.map(DVec2::from))).unwrap();
         let points = traces.iter().map(|t| t.iter().copied().map(DVec2::from).collect());
-        Dragged::of(Model::new(scene, Some(DVec2::ZERO)).unwrap(), points)
+        Dragged::of(Arc::new(Model::new(scene, Some(DVec2::ZERO)).unwrap()), points)
     }
 
-    fn of(model: Model, points: impl Iterator<Item = Vec<DVec2>>) -> Self {
+    fn of(model: Arc<Model>, points: impl Iterator<Item = Vec<DVec2>>) -> Self {
         let traces: Vec<_> = points.zip(0..).map(|(points, id)| settle(&model, &Trace { id, points })).collect();
-        let records = Reference::new(&model).evaluate(&traces, &Job::new()).unwrap();
+        let records = Reference::new(model.clone()).evaluate(&traces, &Job::new()).unwrap();
         Dragged { model, traces, records }
     }
 
     /// A walk in the floor plan, everything `unit` times as large.
     fn walk(steps: usize, unit: f64) -> Self {
         let plan = floor_plan();
-        let model = Model::new(plan.clone(), None).unwrap();
+        let model = Arc::new(Model::new(plan.clone(), None).unwrap());
         let trace = walks(&model, Walker { step: 0.25, steps, seed: 1 }, 4).remove(3);
         let walls = (0..plan.walls().len()).map(|w| plan.ends(w).map(|p| p * unit));
-        let scaled = Model::new(Scene::new(walls).unwrap(), Some(model.anchor() * unit)).unwrap();
+        let scaled = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(model.anchor() * unit)).unwrap());
         Dragged::of(scaled, std::iter::once(trace.points.iter().map(|&p| p * unit).collect()))
     }
 
@@ -186,7 +187,7 @@ fn long_traces_and_large_scenes_make_small_files() {
         let at = DVec2::new(f64::from(i % 130), f64::from(i / 130));
         [[at, at + 0.8 * DVec2::X], [at, at + 0.7 * DVec2::Y]]
     });
-    let model = Model::new(Scene::new(grid).unwrap(), Some(DVec2::splat(0.5))).unwrap();
+    let model = Arc::new(Model::new(Scene::new(grid).unwrap(), Some(DVec2::splat(0.5))).unwrap());
     let dragged =
         Dragged::of(model, std::iter::once(vec![DVec2::splat(0.5), DVec2::new(0.9, 0.9), DVec2::new(0.9, 3.6)]));
     let (near, all) = (dragged.drawing().svg().unwrap(), dragged.drawing().part(Part::All).svg().unwrap());

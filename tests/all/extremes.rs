@@ -1,6 +1,7 @@
 //! Extreme cases on every engine. Those that promise right ropes must all give the same events, and the two methods the same
 //! ropes, after every step; `fast` and `note` must come to an end with records that are sound in themselves.
 
+use std::sync::Arc;
 use std::sync::OnceLock;
 
 use glam::DVec2;
@@ -83,7 +84,7 @@ fn complaints(case: &Extreme) -> Vec<String> {
     for trace in &traces {
         assert_eq!(trace.violation(), None, "{}", case.name);
     }
-    let truth = run(&mut Reference::new(&model), &traces);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
     let mut wrong: Vec<String> = Vec::from_iter(left_out(&model, &truth));
     let mut compare = |name: &str, engine: &mut dyn Engine| {
         wrong.extend(difference(&truth, &run(engine, &traces)).map(|what| format!("{name}, {what}")));
@@ -91,36 +92,36 @@ fn complaints(case: &Extreme) -> Vec<String> {
     // What has very many steps is evaluated once by each engine, and what a device would take minutes for, by the others.
     let is_short = traces.iter().map(SettledTrace::steps).sum::<usize>() <= 100_000;
     let suits_devices = truth.iter().all(|record| record.events.len() <= LONGEST_CHAIN);
-    compare("cpu", &mut Cpu::new(&model));
+    compare("cpu", &mut Cpu::new(model.clone()));
     if is_short {
-        compare("cpu, window 1", &mut Cpu::new(&model).window(1));
-        compare("cpu, lists at once", &mut Cpu::with_lists(Lists::new(&model).after(0)));
-        compare("cpu, all vertices", &mut Cpu::new(&model).keep_all());
-        compare("cpu, baseline", &mut Cpu::new(&model).simd(Simd::baseline()));
+        compare("cpu, window 1", &mut Cpu::new(model.clone()).window(1));
+        compare("cpu, lists at once", &mut Cpu::with_lists(Lists::new(model.clone()).after(0)));
+        compare("cpu, all vertices", &mut Cpu::new(model.clone()).keep_all());
+        compare("cpu, baseline", &mut Cpu::new(model.clone()).simd(Simd::baseline()));
     }
     if suits_devices {
-        compare("gpu", &mut gpu_on(device(), Lists::new(&model).after(0)));
+        compare("gpu", &mut gpu_on(device(), Lists::new(model.clone()).after(0)));
     }
     if suits_devices && is_short {
-        compare("gpu, lists later", &mut Gpu::new(device(), &model).unwrap());
-        compare("gpu, all vertices", &mut gpu_on(device(), Lists::new(&model).keep_all()));
+        compare("gpu, lists later", &mut Gpu::new(device(), model.clone()).unwrap());
+        compare("gpu, all vertices", &mut gpu_on(device(), Lists::new(model.clone()).keep_all()));
     }
     let sound = |engine: &mut dyn Engine| {
         let records = run(engine, &traces);
         assert_eq!(records.len(), traces.len());
         traces.iter().zip(&records).for_each(|(trace, record)| is_sound(&model, trace, record));
     };
-    sound(&mut Note::new(&model));
+    sound(&mut Note::new(model.clone()));
     if suits_devices {
-        sound(&mut FastGpu::new(device(), &model).unwrap());
+        sound(&mut FastGpu::new(device(), model.clone()).unwrap());
     }
     if suits_devices && is_short {
-        sound(&mut FastGpu::new(device(), &model).unwrap().keep_all());
+        sound(&mut FastGpu::new(device(), model.clone()).unwrap().keep_all());
     }
-    match Funnel::new(&model).evaluate(&traces, &Job::new()) {
+    match Funnel::new(model.clone()).evaluate(&traces, &Job::new()) {
         Ok(found) => {
             wrong.extend(other_ropes(&model, case, &truth, &found));
-            wrong.extend(other_end(&truth, &run(&mut Funnel::new(&model).final_only(), &traces)));
+            wrong.extend(other_end(&truth, &run(&mut Funnel::new(model.clone()).final_only(), &traces)));
         }
         Err(EngineError::Unfit { engine: "funnel", why }) if spans_too_much(case) => {
             assert!(why.contains("triangulation"))
@@ -172,7 +173,7 @@ fn left_out(model: &Model, truth: &[TraceRecord]) -> Option<String> {
 
 /// Whether the funnel has another taut rope after some step. Of very deep ropes only the length, bit for bit, and the depth
 /// are compared after each step, and all of the last.
-fn other_ropes(model: &Model, case: &Extreme, truth: &[TraceRecord], found: &[TraceRecord]) -> Option<String> {
+fn other_ropes(model: &Arc<Model>, case: &Extreme, truth: &[TraceRecord], found: &[TraceRecord]) -> Option<String> {
     for ((trace, truth), found) in case.traces.iter().zip(truth).zip(found) {
         let whole = trace.points.len() * truth.max_depth as usize <= 1 << 21;
         let [right, wrong] = [truth, found].map(|record| {
@@ -222,11 +223,11 @@ fn long_chains_on_devices() {
     case.traces = (0..).zip(ways).map(|(id, points)| Trace { id, points }).collect();
     let model = case.model();
     let traces = settled(&model, &case);
-    let truth = run(&mut Reference::new(&model), &traces);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
     assert!(truth.iter().all(|record| record.events.len() > 1 << 16), "too short");
     assert!(truth[0].depth > 1 << 16 && truth[1].depth < 10, "another shape");
-    assert_eq!(difference(&truth, &run(&mut Gpu::new(device(), &model).unwrap(), &traces)), None);
-    let found = run(&mut FastGpu::new(device(), &model).unwrap(), &traces);
+    assert_eq!(difference(&truth, &run(&mut Gpu::new(device(), model.clone()).unwrap(), &traces)), None);
+    let found = run(&mut FastGpu::new(device(), model.clone()).unwrap(), &traces);
     traces.iter().zip(&found).for_each(|(trace, record)| is_sound(&model, trace, record));
     // Whole numbers and halves: f32 holds them all.
     assert_eq!(difference(&truth, &found), None);
@@ -242,7 +243,7 @@ fn scaling_and_moving_changes_no_event() {
         assert!(cases.len() >= least, "{} cases", cases.len());
         for case in cases {
             let model = case.model();
-            let records = run(&mut Reference::new(&model), &settled(&model, &case));
+            let records = run(&mut Reference::new(model.clone()), &settled(&model, &case));
             let events: Vec<_> = records.into_iter().map(|record| record.events).collect();
             assert!(events.iter().map(Vec::len).sum::<usize>() > 100, "nothing happened to compare");
             assert!(events == *first.get_or_insert(events.clone()), "{}", case.name);
@@ -263,12 +264,12 @@ fn the_last_magnitudes_taken_are_among_the_scales() {
 /// Too much for the reference, which looks at 200,000 vertices a step: three engines against each other.
 #[test]
 fn very_many_walls_and_steps() {
-    let model = Model::new(random_walls(100_000, 8), None).unwrap();
+    let model = Arc::new(Model::new(random_walls(100_000, 8), None).unwrap());
     let traces = settled_walks(&model, Walker { step: 0.002, steps: 2000, seed: 3 }, 300);
-    let records = run(&mut Cpu::new(&model), &traces);
+    let records = run(&mut Cpu::new(model.clone()), &traces);
     assert!(records.iter().map(|record| record.events.len()).sum::<usize>() > 10_000, "nothing happened to compare");
-    assert_eq!(difference(&records, &run(&mut Gpu::new(device(), &model).unwrap(), &traces)), None);
-    let found = run(&mut Funnel::new(&model), &traces);
+    assert_eq!(difference(&records, &run(&mut Gpu::new(device(), model.clone()).unwrap(), &traces)), None);
+    let found = run(&mut Funnel::new(model.clone()), &traces);
     for (ours, found) in records.into_iter().zip(found) {
         assert_eq!(TraceRecord { events: vec![], ..ours }, TraceRecord { events: vec![], ..found });
     }

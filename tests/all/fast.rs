@@ -1,6 +1,8 @@
 //! What `--precision fast` promises: the reference's ropes where f32 holds all products exactly; and everywhere that it comes
 //! to an end, with a record that is sound in itself and does not depend on the batch.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
@@ -15,8 +17,8 @@ use crate::corpus::bodies::engines::is_sound;
 use crate::scenes::{KINDS, Kind, Recipe, recipe};
 use crate::support::{cases, posts, software};
 
-fn fast<'m>(device: &Device, model: &'m Model) -> FastGpu<'m> {
-    FastGpu::new(device.clone(), model).unwrap()
+fn fast(device: &Device, model: &Arc<Model>) -> FastGpu {
+    FastGpu::new(device.clone(), model.clone()).unwrap()
 }
 
 fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
@@ -24,7 +26,7 @@ fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
 }
 
 /// Runs `test` on random scenes of one kind.
-fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Recipe, &Model)) {
+fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Recipe, &Arc<Model>)) {
     let default = ProptestConfig::default();
     let cases = cases * default.cases / 256;
     let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..default });
@@ -53,13 +55,13 @@ fn whole_numbers() -> impl Strategy<Value = (Vec<Wall>, Vec<Walk>)> {
 }
 
 /// A scene of such walls, and of such walks what touches no wall: no product is rounded in f32, while many signs are 0.
-fn whole_scene(walls: &[Wall], walks: &[Walk]) -> (Model, Vec<SettledTrace>) {
+fn whole_scene(walls: &[Wall], walks: &[Walk]) -> (Arc<Model>, Vec<SettledTrace>) {
     let point = |[x, y]: [i32; 2]| DVec2::new(x.into(), y.into());
     let along = |[x, y]: [i32; 2], to: [i32; 2]| if to[0] % 2 == 0 { [to[0], y] } else { [x, to[1]] };
     let ends = walls.iter().map(|&(from, to, is_along)| [from, if is_along { along(from, to) } else { to }]);
     let scene = Scene::new(ends.map(|ends| ends.map(point))).unwrap();
     // Walls between whole numbers that pass through this point are longer than these.
-    let model = Model::new(scene, Some(DVec2::new(1.0 / 64.0, 0.5))).unwrap();
+    let model = Arc::new(Model::new(scene, Some(DVec2::new(1.0 / 64.0, 0.5))).unwrap());
     let walk = |(id, (moves, unit)): (u64, &Walk)| {
         let mut points = vec![model.anchor()];
         for &by in moves {
@@ -84,7 +86,7 @@ fn where_f32_is_exact_fast_is_the_reference() {
     let result = TestRunner::new(config).run(&whole_numbers(), |(walls, walks)| {
         let (model, traces) = whole_scene(&walls, &walks);
         assert!(traces.iter().all(|trace| trace.is_plain() && trace.violation().is_none()));
-        let truth = run(&mut Reference::new(&model), &traces);
+        let truth = run(&mut Reference::new(model.clone()), &traces);
         assert_eq!(run(&mut fast(&device, &model), &traces), truth);
         assert_eq!(run(&mut fast(&device, &model).keep_all(), &traces), truth);
         assert_eq!(run(&mut fast(&device, &model).window(3), &traces), truth);
@@ -100,10 +102,10 @@ fn where_f32_is_exact_fast_is_the_reference() {
 #[test]
 fn a_contact_passed_straight_is_no_depth() {
     let walls = [[[1.0, 0.0], [1.0, 1.0]]].map(|wall| wall.map(DVec2::from));
-    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap();
+    let model = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap());
     let points = [[0.0, 0.0], [2.0, -1.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0], [3.0, -1.0]].map(DVec2::from).to_vec();
     let trace = [settle(&model, &Trace { id: 0, points })];
-    let truth = run(&mut Reference::new(&model), &trace);
+    let truth = run(&mut Reference::new(model.clone()), &trace);
     assert_eq!((truth[0].max_depth, truth[0].events.len()), (0, 2));
     assert_eq!(run(&mut fast(&software(), &model), &trace), truth);
 }
@@ -147,7 +149,7 @@ fn records_are_sound_at_the_ends_of_the_range() {
         for origin in [DVec2::ZERO, offset] {
             let place = |p: [f64; 2]| DVec2::from(p) * scale + if scale == 1.0 { origin } else { DVec2::ZERO };
             let scene = Scene::new(walls.map(|wall| wall.map(place))).unwrap();
-            let model = Model::new(scene, Some(place([0.0, 0.0]))).unwrap();
+            let model = Arc::new(Model::new(scene, Some(place([0.0, 0.0]))).unwrap());
             let points: Vec<_> = ring.iter().cycle().take(40).map(|&p| place(p.map(|c| c * stretch))).collect();
             let trace = settle(&model, &Trace { id: 0, points });
             for mut engine in [fast(&device, &model), fast(&device, &model).keep_all()] {
@@ -165,7 +167,7 @@ fn points_on_corners_are_taken_off_them() {
     let device = software();
     let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]].map(DVec2::from);
     let walls = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]);
-    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(-2.0, -1.0))).unwrap();
+    let model = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(-2.0, -1.0))).unwrap());
     let way = |id, order: &[usize]| {
         let mut points = vec![model.anchor(), DVec2::new(-0.5, -0.25)];
         points.extend(order.iter().map(|&i| corners[i]));
@@ -175,7 +177,7 @@ fn points_on_corners_are_taken_off_them() {
     let traces =
         [way(0, &[0, 1, 2, 3]), way(1, &[0, 3, 2, 1, 0]), way(2, &[0, 1, 2, 1, 0]), way(3, &[0, 1, 2, 3, 0, 1, 0])];
     assert!(traces.iter().all(|trace| !trace.is_plain() && trace.violation().is_none()));
-    let truth = run(&mut Reference::new(&model), &traces);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
     assert!(truth[0].depth >= 2 && truth[3].depth >= 3, "{} and {}", truth[0].depth, truth[3].depth);
     let ropes = |records: &[TraceRecord]| records.iter().map(|record| record.wraps.clone()).collect::<Vec<_>>();
     assert_eq!(ropes(&run(&mut fast(&device, &model), &traces)), ropes(&truth));
@@ -184,8 +186,8 @@ fn points_on_corners_are_taken_off_them() {
 #[test]
 fn no_trace_depends_on_the_others() {
     let device = software();
-    let plan = Model::new(floor_plan(), None).unwrap();
-    let walls = Model::new(random_walls(200, 4), None).unwrap();
+    let plan = Arc::new(Model::new(floor_plan(), None).unwrap());
+    let walls = Arc::new(Model::new(random_walls(200, 4), None).unwrap());
     for (model, step) in [(&plan, 0.3), (&walls, 0.03)] {
         let traces: Vec<_> =
             walks(model, Walker { step, steps: 150, seed: 9 }, 90).iter().map(|t| settle(model, t)).collect();
@@ -196,7 +198,7 @@ fn no_trace_depends_on_the_others() {
         backwards.reverse();
         for queries in [1, 7, 1 << 13] {
             let tuning = Tuning { queries, workgroup: 64 };
-            let mut engine = FastGpu::with(device.clone(), model, tuning, DECIDE_WGSL).unwrap();
+            let mut engine = FastGpu::with(device.clone(), model.clone(), tuning, DECIDE_WGSL).unwrap();
             assert_eq!(run(&mut engine, &traces), alone, "{queries} queries a round");
             let mut records = run(&mut engine, &backwards);
             records.reverse();
@@ -222,7 +224,7 @@ const LAST: &str =
 
 #[test]
 fn a_fast_engine_stops_and_takes_nothing_for_an_answer() {
-    let model = Model::new(floor_plan(), None).unwrap();
+    let model = Arc::new(Model::new(floor_plan(), None).unwrap());
     let device = software();
     let traces = [settle(&model, &walks(&model, Walker { step: 0.3, steps: 50, seed: 3 }, 1)[0])];
     let job = Job::new();
@@ -233,14 +235,14 @@ fn a_fast_engine_stops_and_takes_nothing_for_an_answer() {
     // A device that unwraps what is not there is found out, and does not hang.
     let broken = DECIDE_WGSL.replace(LAST, "answers[lane] = Answer(0u, UNWRAP, 1.0, 0u, met.at);");
     let tuning = Tuning { queries: 8, workgroup: 64 };
-    let error = FastGpu::with(device.clone(), &model, tuning, &broken).unwrap().evaluate(&traces, &Job::new());
+    let error = FastGpu::with(device.clone(), model.clone(), tuning, &broken).unwrap().evaluate(&traces, &Job::new());
     assert!(error.unwrap_err().to_string().contains("it named a vertex that it was not given"));
     // Nor does one that names the same vertex again and again.
     let broken = DECIDE_WGSL.replace(LAST, "answers[lane] = Answer(0u, question.first, 1.0, 0u, met.at);");
     let records =
-        FastGpu::with(device.clone(), &model, tuning, &broken).unwrap().evaluate(&traces, &Job::new()).unwrap();
+        FastGpu::with(device.clone(), model.clone(), tuning, &broken).unwrap().evaluate(&traces, &Job::new()).unwrap();
     is_sound(&model, &traces[0], &records[0]);
     // The engines say what they are.
-    let precisions = [fast(&device, &model).precision(), Gpu::new(device, &model).unwrap().precision()];
+    let precisions = [fast(&device, &model).precision(), Gpu::new(device, model.clone()).unwrap().precision()];
     assert_eq!(precisions.map(|p| p.unwrap().name()), ["fast", "certified"]);
 }

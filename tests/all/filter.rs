@@ -1,6 +1,8 @@
 //! That the candidate pass misses nothing, on two million near-degenerate queries and on real walks; and that this is able to
 //! fail.
 
+use std::sync::Arc;
+
 use proptest::prelude::ProptestConfig;
 use rayon::prelude::*;
 use tautline::candidates::{LISTS_BUDGET, Lists, MARGIN, Simd};
@@ -68,7 +70,7 @@ fn without_its_margin_every_pass_misses_some() {
 fn no_walk_meets_a_vertex_that_its_queries_miss() {
     let aegean = read_scene(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/aegean.geojson").as_ref()).unwrap();
     for (name, scene, step) in [("random-500", random_walls(500, 1), 0.01), ("aegean", aegean, 0.5)] {
-        let model = Model::new(scene, None).unwrap();
+        let model = Arc::new(Model::new(scene, None).unwrap());
         let walks = settled_walks(&model, Walker { step, steps: 1000, seed: 1 }, 100);
         let found = Filter::of_walks(&model, &walks).unwrap();
         println!("{name}: {found:?}, {:.4} % of the vertices named are false", 100.0 * found.false_share());
@@ -80,8 +82,8 @@ fn no_walk_meets_a_vertex_that_its_queries_miss() {
 /// The NaN by which lists fill up their last block stay on the CPU.
 #[test]
 fn devices_are_given_numbers_only() {
-    let model = Model::new(random_walls(9, 1), None).unwrap();
-    let lists = Lists::new(&model);
+    let model = Arc::new(Model::new(random_walls(9, 1), None).unwrap());
+    let lists = Lists::new(model.clone());
     let given: Vec<[f32; 2]> = lists.all().coordinates().collect();
     assert_eq!(given.len(), 18);
     assert!(given.iter().flatten().all(|x| x.abs() <= 1.0), "{given:?}");

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::sync::Arc;
 
 use assert_cmd::cargo::cargo_bin;
 use glam::DVec2;
@@ -132,11 +133,11 @@ fn named(name: &str) -> Situation {
 }
 
 /// The moments after the steps of a situation.
-fn steps(situation: &Situation, model: &Model) -> Vec<Moment> {
+fn steps(situation: &Situation, model: &Arc<Model>) -> Vec<Moment> {
     let trace = situation.trace(model);
     let points: Vec<DVec2> =
         (0..trace.points().len()).filter(|&i| trace.ends_step(i)).map(|i| trace.points()[i]).collect();
-    let record = evaluated(&mut Reference::new(model), model, situation);
+    let record = evaluated(&mut Reference::new(model.clone()), model, situation);
     let mut steps = Vec::new();
     moments(model.anchor(), model.vertices(), &points, &record.events, |m| {
         if m.event.is_none() {
@@ -154,14 +155,14 @@ fn every_situation_is_as_its_caption_says() {
         let model = situation.model();
         assert_eq!(situation.trace(&model).violation(), None, "{name}");
         let wraps: Vec<(DVec2, Side)> = wraps.iter().map(|&(at, side)| (at.into(), side)).collect();
-        for engine in [&mut Reference::new(&model) as &mut dyn Engine, &mut Cpu::new(&model)] {
+        for engine in [&mut Reference::new(model.clone()) as &mut dyn Engine, &mut Cpu::new(model.clone())] {
             let record = evaluated(engine, &model, situation);
             let at = |vertex: u32| model.vertices()[vertex as usize].to_array();
             let found: Vec<_> = record.events.iter().map(|e| (e.step, e.kind, at(e.vertex), e.side)).collect();
             assert_eq!(found, *events, "{name}, {}", engine.name());
             assert_eq!(record.wraps, wraps, "{name}, {}", engine.name());
         }
-        assert_eq!(evaluated(&mut Funnel::new(&model), &model, situation).wraps, wraps, "{name}, funnel");
+        assert_eq!(evaluated(&mut Funnel::new(model.clone()), &model, situation).wraps, wraps, "{name}, funnel");
     }
 }
 
@@ -206,8 +207,8 @@ fn what_captions_say_besides_is_so() {
 fn one_event_a_step_is_not_enough_where_the_gallery_says_so() {
     for name in ["several-events", "wrap-and-unwrap", "passed-straight", "winding", "touching-a-corner"] {
         let (situation, model) = (named(name), named(name).model());
-        let truth = evaluated(&mut Reference::new(&model), &model, &situation).wraps;
-        assert_ne!(evaluated(&mut Note::new(&model), &model, &situation).wraps, truth, "{name}");
+        let truth = evaluated(&mut Reference::new(model.clone()), &model, &situation).wraps;
+        assert_ne!(evaluated(&mut Note::new(model.clone()), &model, &situation).wraps, truth, "{name}");
     }
 }
 

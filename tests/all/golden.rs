@@ -5,17 +5,17 @@ use tautline::engine::{Cpu, Funnel, Reference};
 
 #[test]
 fn reference_gives_the_golden_ropes() {
-    support::compare_with_cases(|model| Box::new(Reference::new(model)));
+    support::compare_with_cases(|model| Box::new(Reference::new(model.clone())));
 }
 
 #[test]
 fn funnel_gives_the_golden_ropes() {
-    support::compare_with_cases(|model| Box::new(Funnel::new(model)));
+    support::compare_with_cases(|model| Box::new(Funnel::new(model.clone())));
 }
 
 #[test]
 fn cpu_gives_the_golden_ropes() {
-    support::compare_with_cases(|model| Box::new(Cpu::new(model)));
+    support::compare_with_cases(|model| Box::new(Cpu::new(model.clone())));
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! One rope, step by step.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use tautline::engine::{AdvanceError, Engine, Job, LiveRope, Reference};
 use tautline::example::{BuiltIn, Walker, walks};
@@ -7,11 +9,11 @@ use tautline::scene::{Model, Scene};
 use tautline::trace::{Trace, settle};
 
 /// What the reference says of a trace is what a live rope says, move by move.
-fn same(model: &Model, trace: &Trace) -> usize {
+fn same(model: &Arc<Model>, trace: &Trace) -> usize {
     let settled = settle(model, trace);
     assert!(settled.violation().is_none());
-    let record = Reference::new(model).evaluate(&[settled], &Job::new()).unwrap().remove(0);
-    let mut rope = LiveRope::new(model);
+    let record = Reference::new(model.clone()).evaluate(&[settled], &Job::new()).unwrap().remove(0);
+    let mut rope = LiveRope::new(model.clone());
     let mut expected = record.events.iter().peekable();
     let mut longest = 0.0f64;
     for (step, &to) in trace.points.iter().enumerate() {
@@ -31,7 +33,7 @@ fn a_live_rope_is_the_trace_s() {
     let mut events = 0;
     for (scene, step) in [(BuiltIn::Random(60), 0.1), (BuiltIn::Lattice(60), 0.9), (BuiltIn::Rooms, 0.5)] {
         for seed in 0..4 {
-            let model = Model::new(scene.scene(seed), None).unwrap();
+            let model = Arc::new(Model::new(scene.scene(seed), None).unwrap());
             for trace in walks(&model, Walker { step, steps: 300, seed }, 4) {
                 events += same(&model, &trace);
             }
@@ -43,7 +45,7 @@ fn a_live_rope_is_the_trace_s() {
 #[test]
 fn a_rope_that_is_tied_at_a_wall_s_end_goes_round_it() {
     let walls = [[[0.0, 0.0], [1.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]]].map(|w| w.map(DVec2::from));
-    let model = Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap();
+    let model = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(DVec2::ZERO)).unwrap());
     for points in
         [[[-0.5, 0.5], [-0.5, 2.0], [0.5, 2.0], [0.5, 0.5]], [[0.5, -0.5], [2.0, -0.5], [2.0, 0.5], [0.5, 0.5]]]
     {
@@ -54,8 +56,8 @@ fn a_rope_that_is_tied_at_a_wall_s_end_goes_round_it() {
 #[test]
 fn moves_that_touch_walls_are_refused_and_change_nothing() {
     let wall = [[0.0, 0.0], [2.0, 0.0]].map(DVec2::from);
-    let model = Model::new(Scene::new([wall]).unwrap(), Some(DVec2::new(0.0, -1.0))).unwrap();
-    let mut rope = LiveRope::new(&model);
+    let model = Arc::new(Model::new(Scene::new([wall]).unwrap(), Some(DVec2::new(0.0, -1.0))).unwrap());
+    let mut rope = LiveRope::new(model.clone());
     rope.advance([3.0, -1.0].into()).unwrap();
     assert_eq!(rope.advance([3.0, 1.0].into()).unwrap().len(), 1);
     let before = (rope.rope().clone(), rope.free_end(), rope.length());

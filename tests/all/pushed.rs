@@ -5,6 +5,7 @@
 //! rope is, but for that little, the rope of one of them.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use glam::DVec2;
 use proptest::prelude::*;
@@ -143,7 +144,7 @@ fn corners(wraps: &[(DVec2, tautline::rope::Side)], from: DVec2, to: DVec2) -> V
 }
 
 /// The ropes of all ways over pushed points, `None` if there is no way. Also whether some ways were left out.
-fn truth(case: &Case, model: &Model, points: &[DVec2]) -> (Option<Vec<Vec<[i64; 2]>>>, bool) {
+fn truth(case: &Case, model: &Arc<Model>, points: &[DVec2]) -> (Option<Vec<Vec<[i64; 2]>>>, bool) {
     let scene = model.scene();
     let anchor = points[0];
     let starts = pushed(scene, anchor).into_iter().filter(|&q| !case.is_in_border_box(anchor, q));
@@ -207,11 +208,11 @@ fn spread(ways: Vec<Vec<DVec2>>, most: usize) -> Vec<Vec<DVec2>> {
 }
 
 /// The rope of a way that touches nothing, brought back to the lattice.
-fn rope(model: &Model, way: &[DVec2], anchor: DVec2, to: DVec2) -> Vec<[i64; 2]> {
-    let model = model.tied(way[0]).unwrap();
+fn rope(model: &Arc<Model>, way: &[DVec2], anchor: DVec2, to: DVec2) -> Vec<[i64; 2]> {
+    let model = Arc::new(model.tied(way[0]).unwrap());
     let settled = settle(&model, &Trace { id: 0, points: way.to_vec() });
     assert_eq!(settled.violation(), None);
-    let record = Reference::new(&model).evaluate(&[settled], &Job::new()).unwrap().remove(0);
+    let record = Reference::new(model.clone()).evaluate(&[settled], &Job::new()).unwrap().remove(0);
     corners(&record.wraps, anchor, to)
 }
 
@@ -224,7 +225,7 @@ fn check(case: &Case) {
         _ => p(at),
     };
     let anchor = stand(case.anchor);
-    let model = Model::new(scene.clone(), Some(anchor)).unwrap();
+    let model = Arc::new(Model::new(scene.clone(), Some(anchor)).unwrap());
     let own: Vec<DVec2> = case.points.iter().map(|&q| stand(q)).collect();
     // With the vertices that steps pass.
     let mut points = vec![anchor];
@@ -253,7 +254,7 @@ fn check(case: &Case) {
         return;
     };
     assert_eq!(settled.violation(), None, "some way is free: {ropes:?}");
-    let record = Reference::new(&model).evaluate(&[settled], &Job::new()).unwrap().remove(0);
+    let record = Reference::new(model.clone()).evaluate(&[settled], &Job::new()).unwrap().remove(0);
     let ours = corners(&record.wraps, anchor, points[points.len() - 1]);
     assert!(left_out || ropes.contains(&ours), "{ours:?} is none of {ropes:?}");
 }

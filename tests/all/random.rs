@@ -1,5 +1,6 @@
 //! Engines against each other on random scenes of every kind, with shrinking.
 
+use std::sync::Arc;
 use std::sync::OnceLock;
 
 use proptest::prelude::*;
@@ -28,7 +29,7 @@ fn ropes(model: &Model, trace: &Trace, record: &TraceRecord) -> Vec<Vec<(u32, &'
 }
 
 /// Runs `test` on random scenes of one kind, with traces that keep to the rules.
-fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Model, &Trace, &SettledTrace)) {
+fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Arc<Model>, &Trace, &SettledTrace)) {
     check_traces(kind, touching, cases, Recipe::trace, |model, trace, settled| {
         assert_eq!(settled.violation(), None);
         test(model, trace, settled);
@@ -40,7 +41,7 @@ fn check_traces(
     touching: bool,
     cases: u32,
     walk: impl Fn(&Recipe, &Model, u64) -> Trace,
-    test: impl Fn(&Model, &Trace, &SettledTrace),
+    test: impl Fn(&Arc<Model>, &Trace, &SettledTrace),
 ) {
     // PROPTEST_CASES=2560 runs ten times as many.
     let default = ProptestConfig::default();
@@ -61,9 +62,9 @@ fn check_traces(
     result.unwrap();
 }
 
-fn reference_agrees_with_funnel(model: &Model, trace: &Trace, settled: &SettledTrace) {
+fn reference_agrees_with_funnel(model: &Arc<Model>, trace: &Trace, settled: &SettledTrace) {
     let batch = std::slice::from_ref(settled);
-    let [ours, truth] = [run(&mut Reference::new(model), batch), run(&mut Funnel::new(model), batch)];
+    let [ours, truth] = [run(&mut Reference::new(model.clone()), batch), run(&mut Funnel::new(model.clone()), batch)];
     assert_eq!(ropes(model, trace, &ours[0]), ropes(model, trace, &truth[0]));
     let report = |r: &TraceRecord| TraceRecord { events: vec![], ..r.clone() };
     assert_eq!(report(&ours[0]), report(&truth[0]));
@@ -84,11 +85,11 @@ fn reference_agrees_with_funnel_where_traces_touch() {
 }
 
 /// After every step: the trace is cut off there, and settled anew, so that it ends as it would there.
-fn final_only_agrees_with_funnel(model: &Model, trace: &Trace, _: &SettledTrace) {
+fn final_only_agrees_with_funnel(model: &Arc<Model>, trace: &Trace, _: &SettledTrace) {
     let cut = |k: usize| settle(model, &Trace { id: k as u64, points: trace.points[..k].to_vec() });
     let cuts: Vec<_> = (1..=trace.points.len()).map(cut).collect();
-    let every_step = run(&mut Funnel::new(model), &cuts);
-    let final_only = run(&mut Funnel::new(model).final_only(), &cuts);
+    let every_step = run(&mut Funnel::new(model.clone()), &cuts);
+    let final_only = run(&mut Funnel::new(model.clone()).final_only(), &cuts);
     assert_eq!(every_step.len(), final_only.len());
     for (every, last) in every_step.iter().zip(&final_only) {
         let result = |r: &TraceRecord| (r.trace, r.status, r.steps, r.length, r.depth, r.wraps.clone(), r.pull);
@@ -115,14 +116,14 @@ fn cpu_gives_the_references_events() {
         for touching in [false, true] {
             check(kind, touching, 300, |model, _, settled| {
                 let batch = std::slice::from_ref(settled);
-                let truth = run(&mut Reference::new(model), batch);
-                assert_eq!(run(&mut Cpu::new(model), batch), truth);
-                assert_eq!(run(&mut Cpu::new(model).window(1), batch), truth);
-                assert_eq!(run(&mut Cpu::new(model).simd(Simd::baseline()), batch), truth);
-                assert_eq!(run(&mut Cpu::with_lists(Lists::new(model).after(0)), batch), truth);
-                assert_eq!(run(&mut Cpu::with_lists(Lists::new(model).after(2)).window(3), batch), truth);
-                assert_eq!(run(&mut Cpu::new(model).keep_all(), batch), truth);
-                assert_eq!(run(&mut Cpu::new(model).keep_all().window(1), batch), truth);
+                let truth = run(&mut Reference::new(model.clone()), batch);
+                assert_eq!(run(&mut Cpu::new(model.clone()), batch), truth);
+                assert_eq!(run(&mut Cpu::new(model.clone()).window(1), batch), truth);
+                assert_eq!(run(&mut Cpu::new(model.clone()).simd(Simd::baseline()), batch), truth);
+                assert_eq!(run(&mut Cpu::with_lists(Lists::new(model.clone()).after(0)), batch), truth);
+                assert_eq!(run(&mut Cpu::with_lists(Lists::new(model.clone()).after(2)).window(3), batch), truth);
+                assert_eq!(run(&mut Cpu::new(model.clone()).keep_all(), batch), truth);
+                assert_eq!(run(&mut Cpu::new(model.clone()).keep_all().window(1), batch), truth);
             });
         }
     }
@@ -136,9 +137,12 @@ fn gpu_gives_the_references_events() {
         for touching in [false, true] {
             check(kind, touching, 40, |model, _, settled| {
                 let batch = std::slice::from_ref(settled);
-                let truth = run(&mut Reference::new(model), batch);
-                assert_eq!(run(&mut gpu_on(adapter.clone(), Lists::new(model).after(0)), batch), truth);
-                assert_eq!(run(&mut gpu_on(adapter.clone(), Lists::new(model).keep_all()).window(1), batch), truth);
+                let truth = run(&mut Reference::new(model.clone()), batch);
+                assert_eq!(run(&mut gpu_on(adapter.clone(), Lists::new(model.clone()).after(0)), batch), truth);
+                assert_eq!(
+                    run(&mut gpu_on(adapter.clone(), Lists::new(model.clone()).keep_all()).window(1), batch),
+                    truth
+                );
             });
         }
     }
@@ -151,8 +155,11 @@ fn lawless_traces_are_lawful_until_they_cross_a_wall() {
     for kind in KINDS {
         for touching in [false, true] {
             check_traces(kind, touching, 300, Recipe::lawless_trace, |model, trace, settled| {
-                let truth = run(&mut Reference::new(model), std::slice::from_ref(settled)).remove(0);
-                assert_eq!(run(&mut Cpu::new(model), std::slice::from_ref(settled)), std::slice::from_ref(&truth));
+                let truth = run(&mut Reference::new(model.clone()), std::slice::from_ref(settled)).remove(0);
+                assert_eq!(
+                    run(&mut Cpu::new(model.clone()), std::slice::from_ref(settled)),
+                    std::slice::from_ref(&truth)
+                );
                 let Some(violation) = settled.violation() else { return };
                 assert_eq!((truth.status, truth.steps), (Status::Violation, trace.points.len() as u64 - 1));
                 // The step before may pass a wall on another side when the trace does not go on from there.
@@ -163,7 +170,7 @@ fn lawless_traces_are_lawful_until_they_cross_a_wall() {
                 }
                 let lawful = settle(model, &start);
                 assert_eq!(lawful.violation(), None);
-                let lawful = run(&mut Reference::new(model), &[lawful]).remove(0);
+                let lawful = run(&mut Reference::new(model.clone()), &[lawful]).remove(0);
                 let same = truth.events.iter().take_while(|e| (e.step as usize) < kept).copied().collect::<Vec<_>>();
                 assert_eq!(lawful.events, same);
             });
@@ -187,13 +194,13 @@ fn how_traces_are_batched_changes_nothing() {
             let model = recipes[0].model();
             let traces: Vec<Trace> = recipes.iter().zip(0..).map(|(recipe, id)| recipe.trace(&model, id)).collect();
             let settled: Vec<SettledTrace> = traces.iter().map(|t| settle(&model, t)).collect();
-            let truth = run(&mut Reference::new(&model), &settled);
+            let truth = run(&mut Reference::new(model.clone()), &settled);
             // Another order, with repeats.
             let order: Vec<usize> = (0..3 * settled.len()).map(|i| (i * stride + shift) % settled.len()).collect();
             let mixed: Vec<SettledTrace> = order.iter().map(|&i| settled[i].clone()).collect();
             let expected: Vec<TraceRecord> = order.iter().map(|&i| truth[i].clone()).collect();
             let tuning = Tuning { queries, workgroup: 64 };
-            let lists = || Lists::new(&model).after(after);
+            let lists = || Lists::new(model.clone()).after(after);
             for pool in &pools {
                 pool.install(|| {
                     assert_eq!(run(&mut Cpu::with_lists(lists()).window(window), &mixed), expected);

@@ -1,6 +1,7 @@
 //! What a scene requires, against a look at every wall for every vertex, and that leaving out the rest changes no event.
 
 use std::cell::Cell;
+use std::sync::Arc;
 use std::sync::OnceLock;
 
 use glam::DVec2;
@@ -161,7 +162,7 @@ fn check(model: &Model) -> Result<usize, TestCaseError> {
 }
 
 /// Runs `test`, which counts something, on random scenes of a kind.
-fn count(kind: Kind, cases: u32, test: impl Fn(&Model, &Trace) -> Result<usize, TestCaseError>) -> usize {
+fn count(kind: Kind, cases: u32, test: impl Fn(&Arc<Model>, &Trace) -> Result<usize, TestCaseError>) -> usize {
     let cases = cases * ProptestConfig::default().cases / 256;
     let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
     let total = Cell::new(0);
@@ -221,8 +222,8 @@ fn leaving_out_what_is_not_required_changes_no_event() {
     for kind in KINDS {
         let events = count(kind, 150, |model, trace| {
             let batch = [settle(model, trace)];
-            let truth = run(&mut Reference::new(model), &batch);
-            let lists = || Lists::new(model);
+            let truth = run(&mut Reference::new(model.clone()), &batch);
+            let lists = || Lists::new(model.clone());
             for lists in [lists(), lists().after(0), lists().at_most(0), lists().after(0).at_most(0)] {
                 let mut cpu = Cpu::with_lists(lists);
                 prop_assert_eq!(&run(&mut cpu, &batch), &truth);
@@ -245,7 +246,7 @@ fn ring(corners: &[[f64; 2]]) -> Vec<[DVec2; 2]> {
 
 /// The places of the vertices that are kept.
 fn kept_of(walls: impl IntoIterator<Item = [DVec2; 2]>, anchor: [f64; 2]) -> Vec<[f64; 2]> {
-    let model = Model::new(Scene::new(walls).unwrap(), Some(anchor.into())).unwrap();
+    let model = Arc::new(Model::new(Scene::new(walls).unwrap(), Some(anchor.into())).unwrap());
     kept(&model).into_iter().map(|v| model.vertices()[v as usize].to_array()).collect()
 }
 
@@ -289,17 +290,17 @@ fn a_lake_on_an_island_is_out_of_reach() {
 #[test]
 fn what_remains_depends_on_how_far_traces_go() {
     let posts = (0..10).map(|k| [DVec2::new(f64::from(k), 1.0), DVec2::new(f64::from(k), 2.0)]);
-    let model = Model::new(Scene::new(posts).unwrap(), Some(DVec2::new(0.0, 0.0))).unwrap();
+    let model = Arc::new(Model::new(Scene::new(posts).unwrap(), Some(DVec2::new(0.0, 0.0))).unwrap());
     let to = |x: f64| settle(&model, &Trace { id: 0, points: vec![DVec2::new(x, 0.0), DVec2::new(x, 3.0)] });
-    let mut engine = Cpu::new(&model);
+    let mut engine = Cpu::new(model.clone());
     assert_eq!(engine.remaining(), None);
     run(&mut engine, &[to(2.5)]);
     assert_eq!(engine.remaining(), Some(6));
     // A good deal further than was asked for.
     run(&mut engine, &[to(6.5)]);
     assert_eq!(engine.remaining(), Some(20));
-    assert_eq!(Cpu::new(&model).keep_all().remaining(), Some(20));
-    assert_eq!(Reference::new(&model).remaining(), None);
+    assert_eq!(Cpu::new(model.clone()).keep_all().remaining(), Some(20));
+    assert_eq!(Reference::new(model.clone()).remaining(), None);
 }
 
 /// What is reached is reached within reach: round the far end of this island, no trace goes.
@@ -307,10 +308,10 @@ fn what_remains_depends_on_how_far_traces_go() {
 fn walls_that_lead_out_of_reach_part_what_is_within() {
     // A strip with a notch on its right.
     let island = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 1.0], [0.5, 2.0], [1.0, 2.0], [1.0, 99.0], [0.0, 99.0]];
-    let model = Model::new(Scene::new(ring(&island)).unwrap(), Some(DVec2::new(-1.0, 3.0))).unwrap();
+    let model = Arc::new(Model::new(Scene::new(ring(&island)).unwrap(), Some(DVec2::new(-1.0, 3.0))).unwrap());
     let points = [[-1.0, -1.0], [2.0, -1.0], [2.0, 3.0]].map(DVec2::from).to_vec();
     let batch = [settle(&model, &Trace { id: 0, points })];
-    let mut engine = Cpu::new(&model);
-    assert_eq!(run(&mut engine, &batch), run(&mut Reference::new(&model), &batch));
+    let mut engine = Cpu::new(model.clone());
+    assert_eq!(run(&mut engine, &batch), run(&mut Reference::new(model.clone()), &batch));
     assert_eq!(engine.remaining(), Some(4));
 }

@@ -1,5 +1,7 @@
 //! Random scenes and legal traces in them, of every kind that the golden cases have, in a form that shrinks.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use proptest::prelude::*;
 use tautline::scene::{Model, Scene};
@@ -95,14 +97,14 @@ fn touched(model: &Model, number: u16) -> Option<DVec2> {
 }
 
 impl Recipe {
-    pub(crate) fn model(&self) -> Model {
+    pub(crate) fn model(&self) -> Arc<Model> {
         let walls: Vec<[DVec2; 2]> = self.walls.iter().flat_map(|&w| self.walls_of(w)).collect();
         let anchor = match (walls.first(), self.anchored) {
             (Some(wall), Some(true)) => wall[0],
             (Some(wall), Some(false)) => middle(*wall),
             _ => self.placed(if self.kind == Kind::Needles { [-1.5, 0.031] } else { [0.013, 0.017] }),
         };
-        Model::new(Scene::new(walls).unwrap(), Some(anchor)).unwrap()
+        Arc::new(Model::new(Scene::new(walls).unwrap(), Some(anchor)).unwrap())
     }
 
     /// A trace from the anchor that keeps to the rules: moves that do not are left out.

@@ -1,5 +1,7 @@
 //! That the comparison of the shader with the reference is able to fail.
 
+use std::sync::Arc;
+
 use tautline::candidates::{LISTS_BUDGET, Lists};
 use tautline::engine::{Engine, Gpu, Job, Reference};
 use tautline::example::{Walker, floor_plan, walks};
@@ -36,18 +38,18 @@ const SPREAD: [(&str, &str); 1] = [("span.first + id.x", "id.x - span.first")];
 
 #[test]
 fn a_shader_with_one_operator_changed_is_found_out() {
-    let plan = Model::new(floor_plan(), None).unwrap();
+    let plan = Arc::new(Model::new(floor_plan(), None).unwrap());
     found_out(&plan, false, Walker { step: 0.3, steps: 300, seed: 3 }, 100, &CHANGES);
     found_out(&posts(), true, Walker { step: 0.8, steps: 200, seed: 2 }, 20, &PAGED);
     found_out(&posts(), false, Walker { step: 0.8, steps: 200, seed: 2 }, 100, &SPREAD);
 }
 
-fn found_out(model: &Model, keep_all: bool, walker: Walker, count: u64, changes: &[(&str, &str)]) {
+fn found_out(model: &Arc<Model>, keep_all: bool, walker: Walker, count: u64, changes: &[(&str, &str)]) {
     let traces: Vec<_> = walks(model, walker, count).iter().map(|t| settle(model, t)).collect();
-    let truth = Reference::new(model).evaluate(&traces, &Job::new()).unwrap();
+    let truth = Reference::new(model.clone()).evaluate(&traces, &Job::new()).unwrap();
     let device = software();
     let agrees = |wgsl: &str| {
-        let lists = if keep_all { Lists::new(model).keep_all() } else { Lists::new(model).after(0) };
+        let lists = if keep_all { Lists::new(model.clone()).keep_all() } else { Lists::new(model.clone()).after(0) };
         let tuning = Tuning { queries: 64, workgroup: 64 };
         let mut engine = Gpu::with(device.clone(), lists, LISTS_BUDGET, tuning, wgsl).unwrap();
         let mut evaluate = || engine.evaluate(&traces, &Job::new());
@@ -71,17 +73,17 @@ fn found_out(model: &Model, keep_all: bool, walker: Walker, count: u64, changes:
 
 #[test]
 fn a_device_outlives_a_shader_that_it_refuses() {
-    let model = Model::new(floor_plan(), None).unwrap();
+    let model = Arc::new(Model::new(floor_plan(), None).unwrap());
     let device = software();
     let tuning = |queries| Tuning { queries, workgroup: 64 };
-    let broken_engine = |wgsl| Gpu::with(device.clone(), Lists::new(&model), LISTS_BUDGET, tuning(8), wgsl);
+    let broken_engine = |wgsl| Gpu::with(device.clone(), Lists::new(model.clone()), LISTS_BUDGET, tuning(8), wgsl);
     for broken in ["this is no shader", "@compute @workgroup_size(64) fn other() {}"] {
         let Err(error) = broken_engine(broken) else { panic!("{broken} was taken") };
         assert!(matches!(error, GpuError::Failed { .. }), "{error}");
     }
     let traces = [settle(&model, &walks(&model, Walker { step: 0.3, steps: 50, seed: 3 }, 1)[0])];
     // No room at all is room for one.
-    let mut engine = Gpu::with(device.clone(), Lists::new(&model), LISTS_BUDGET, tuning(0), SWEEP_WGSL).unwrap();
-    let truth = Reference::new(&model).evaluate(&traces, &Job::new()).unwrap();
+    let mut engine = Gpu::with(device.clone(), Lists::new(model.clone()), LISTS_BUDGET, tuning(0), SWEEP_WGSL).unwrap();
+    let truth = Reference::new(model.clone()).evaluate(&traces, &Job::new()).unwrap();
     assert_eq!(engine.evaluate(&traces, &Job::new()).unwrap(), truth);
 }

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 
 use glam::DVec2;
 use proptest::prelude::*;
@@ -92,13 +93,13 @@ impl Recipe {
         self.lines.iter().enumerate().flat_map(line).collect()
     }
 
-    fn model(&self) -> Option<Model> {
+    fn model(&self) -> Option<Arc<Model>> {
         let scene = Scene::new(self.walls()).unwrap();
         let anchor = match self.anchor {
             (at, true) => *scene.vertices().get(usize::from(at[0]))?,
             (at, false) => spot(at),
         };
-        Model::new(scene, Some(anchor)).ok()
+        Some(Arc::new(Model::new(scene, Some(anchor)).ok()?))
     }
 
     /// The model's anchor, and others.
@@ -241,7 +242,7 @@ fn check(model: &Model, anchors: &[DVec2], simple: &Scene, tolerance: f64) {
 }
 
 /// Runs `body` on random models, their anchors and what is left of their scenes.
-fn on_all(kinds: Vec<Kind>, body: impl Fn(&Recipe, &Model, &[DVec2], Scene) -> Result<(), TestCaseError>) {
+fn on_all(kinds: Vec<Kind>, body: impl Fn(&Recipe, &Arc<Model>, &[DVec2], Scene) -> Result<(), TestCaseError>) {
     let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
     let (cases, gone, tied) = (config.cases as usize, Cell::new(0), Cell::new(0));
     let result = TestRunner::new(config).run(&recipes(kinds), |recipe| {
@@ -275,13 +276,13 @@ fn closed_obstacles_only_give_way() {
         if recipe.anchor.1 {
             return Ok(());
         }
-        let simple = Model::new(simple, Some(model.anchor())).unwrap();
+        let simple = Arc::new(Model::new(simple, Some(model.anchor())).unwrap());
         let before = settle(model, &recipe.trace(model));
         let after = before.clone().coarsened(&simple, 1);
         prop_assert_eq!((after.crossings(), after.breaks_rules()), (0, false));
         // Each rope of the scene is one of the simpler scene too, if perhaps not its shortest.
         let length = |model, trace| Reference::new(model).evaluate(&[trace], &Job::new()).unwrap()[0].length;
-        let [before, after] = [length(model, before), length(&simple, after)];
+        let [before, after] = [length(model.clone(), before), length(simple, after)];
         prop_assert!(after <= before * (1.0 + 1e-12), "{after} is longer than {before}");
         longer.set(longer.get() + usize::from(before > after));
         Ok(())

@@ -1,5 +1,7 @@
 //! Coarser traces: which points are left out, and that all engines make the same of what is left.
 
+use std::sync::Arc;
+
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use tautline::engine::{Cpu, Engine, Funnel, Job, Reference};
@@ -49,17 +51,17 @@ fn all_engines_make_the_same_of_a_coarser_trace() {
                 // The same points as a trace of their own, whose steps are numbered anew.
                 let points = used.iter().map(|&i| trace.points[i]).collect();
                 let own = settle(&model, &Trace { id: 5, points });
-                let mut truth = run(&mut Reference::new(&model), &own);
+                let mut truth = run(&mut Reference::new(model.clone()), &own);
                 truth.events.iter_mut().for_each(|e| e.step = used[e.step as usize] as u32);
                 truth.steps = settled.steps() as u64;
-                prop_assert_eq!(&run(&mut Reference::new(&model), &settled), &truth);
-                prop_assert_eq!(&run(&mut Cpu::new(&model), &settled), &truth);
-                let funnel = run(&mut Funnel::new(&model), &settled);
+                prop_assert_eq!(&run(&mut Reference::new(model.clone()), &settled), &truth);
+                prop_assert_eq!(&run(&mut Cpu::new(model.clone()), &settled), &truth);
+                let funnel = run(&mut Funnel::new(model.clone()), &settled);
                 prop_assert_eq!(
                     (&funnel.wraps, funnel.steps, funnel.length),
                     (&truth.wraps, truth.steps, truth.length)
                 );
-                let of_own = run(&mut Funnel::new(&model), &own).events;
+                let of_own = run(&mut Funnel::new(model.clone()), &own).events;
                 let mapped = of_own.iter().map(|e| used[e.step as usize] as u32);
                 prop_assert!(funnel.events.iter().map(|e| e.step).eq(mapped));
 
@@ -79,14 +81,14 @@ fn all_engines_make_the_same_of_a_coarser_trace() {
 #[test]
 fn the_gpu_counts_the_same_steps() {
     use tautline::example::{Walker, floor_plan, walks};
-    let model = Model::new(floor_plan(), None).unwrap();
+    let model = Arc::new(Model::new(floor_plan(), None).unwrap());
     let traces: Vec<SettledTrace> = walks(&model, Walker { step: 0.25, steps: 103, seed: 4 }, 40)
         .into_iter()
         .map(|trace| settle(&model, &trace).coarsened(&model, 4))
         .collect();
     assert!(traces.iter().any(|t| t.jumps() > 0 && t.is_thinned()) && traces.iter().all(|t| t.points().len() < 100));
     let job = Job::new();
-    let truth = Reference::new(&model).evaluate(&traces, &job).unwrap();
+    let truth = Reference::new(model.clone()).evaluate(&traces, &job).unwrap();
     assert_eq!(job.steps(), 40 * 103);
     let job = Job::new();
     assert_eq!(gpu(&model).evaluate(&traces, &job).unwrap(), truth);
@@ -102,9 +104,9 @@ fn the_gpu_counts_the_same_steps() {
 }
 
 /// Walls from point to point, and the anchor at the origin.
-fn model(walls: &[[[f64; 2]; 2]]) -> Model {
+fn model(walls: &[[[f64; 2]; 2]]) -> Arc<Model> {
     let walls = walls.iter().map(|wall| wall.map(Into::into));
-    Model::new(Scene::new(walls).unwrap(), Some([0.0, 0.0].into())).unwrap()
+    Arc::new(Model::new(Scene::new(walls).unwrap(), Some([0.0, 0.0].into())).unwrap())
 }
 
 fn trace(points: &[[f64; 2]]) -> Trace {
@@ -129,7 +131,7 @@ fn what_breaks_the_rules_in_steps_that_are_left_out_is_no_secret() {
     assert_eq!(coarse.points(), [[0.0, 0.0].into(), [0.5, 0.5].into()]);
     assert_eq!((coarse.violation(), coarse.violations()), (given.violation(), 2));
     assert_eq!((coarse.crossings(), coarse.jumps(), coarse.breaks_rules()), (0, 0, true));
-    let record = run(&mut Cpu::new(&model), &coarse);
+    let record = run(&mut Cpu::new(model.clone()), &coarse);
     assert_eq!((record.status, record.steps, record.events.len()), (Status::Violation, 2, 0));
 }
 
@@ -143,5 +145,5 @@ fn walls_that_are_simplified_away_are_still_broken_through() {
     let [into, through] = [into, through].map(|given| given.coarsened(&simple, 1));
     assert_eq!((into.violation(), into.crossings(), into.breaks_rules()), (None, 1, true));
     assert_eq!((through.violation().unwrap().ends[0].x, through.crossings()), (1.0, 1));
-    assert_eq!(run(&mut Reference::new(&simple), &into).status, Status::Violation);
+    assert_eq!(run(&mut Reference::new(simple.clone()), &into).status, Status::Violation);
 }

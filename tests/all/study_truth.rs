@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 use std::f64::consts::PI;
+use std::sync::Arc;
 use std::sync::Mutex;
 
 use glam::DVec2;
@@ -15,7 +16,7 @@ use tautline::trace::{Trace, settle};
 /// The answer of a study, and the folder with its scene.
 fn answer(plan: &str, folder: &std::path::Path) -> Summary {
     let study = Study::open(Plan::parse(plan).unwrap(), folder).unwrap();
-    let mut engines: Vec<Box<dyn Engine + '_>> = study.models().iter().map(|m| Box::new(Cpu::new(m)) as _).collect();
+    let mut engines: Vec<Box<dyn Engine>> = study.models().iter().map(|m| Box::new(Cpu::new(m.clone())) as _).collect();
     let state = Mutex::new(State::new(&study, Shard::WHOLE));
     run(&study, &mut engines, &state, &Job::new(), |_, _, _| Ok::<(), Infallible>(())).unwrap();
     state.into_inner().unwrap().summary(&study)
@@ -139,14 +140,14 @@ fn shortest(model: &Model, goal: DVec2) -> (f64, Vec<DVec2>) {
 fn ropes_are_never_shorter_than_the_shortest_path_and_as_long_along_it() {
     let (mut longer, mut bent) = (0, 0);
     for seed in 0..12 {
-        let model = Model::new(random_walls(25, seed), None).unwrap();
+        let model = Arc::new(Model::new(random_walls(25, seed), None).unwrap());
         for trace in walks(&model, Walker { step: 0.05, steps: 120, seed }, 8) {
             let end = *trace.points.last().unwrap();
             let (length, path) = shortest(&model, end);
             let rope_of = |trace: &Trace| {
                 let settled = settle(&model, trace);
                 assert!(settled.violation().is_none());
-                Reference::new(&model).evaluate(&[settled], &Job::new()).unwrap().remove(0)
+                Reference::new(model.clone()).evaluate(&[settled], &Job::new()).unwrap().remove(0)
             };
             let walked = rope_of(&trace);
             assert!(walked.length >= length * (1.0 - 1e-12), "{} < {length}", walked.length);

@@ -1,5 +1,7 @@
 //! What several test files need: the golden cases and how ropes are compared with them.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use serde::Deserialize;
 use tautline::candidates::{LISTS_BUDGET, Lists};
@@ -43,9 +45,9 @@ pub(crate) fn cases() -> Vec<Case> {
 }
 
 impl Case {
-    pub(crate) fn model(&self) -> Model {
+    pub(crate) fn model(&self) -> Arc<Model> {
         let walls = self.segments.iter().map(|s| s.map(DVec2::from));
-        Model::new(Scene::new(walls).unwrap(), Some(self.anchor.into())).unwrap()
+        Arc::new(Model::new(Scene::new(walls).unwrap(), Some(self.anchor.into())).unwrap())
     }
 
     pub(crate) fn settled(&self, model: &Model) -> Vec<SettledTrace> {
@@ -77,7 +79,7 @@ impl Case {
 }
 
 /// Evaluates every golden case and compares every judged rope.
-pub(crate) fn compare_with_cases(engine: impl for<'m> Fn(&'m Model) -> Box<dyn Engine + 'm>) {
+pub(crate) fn compare_with_cases(engine: impl Fn(&Arc<Model>) -> Box<dyn Engine>) {
     let (mut judged, mut wrong) = (0, vec![]);
     for case in cases() {
         let model = case.model();
@@ -105,23 +107,23 @@ pub(crate) fn software() -> Device {
 }
 
 /// The `gpu` engine on the software adapter, which it asks about every pivot.
-pub(crate) fn gpu(model: &Model) -> Gpu<'_> {
-    gpu_on(software(), Lists::new(model).after(0))
+pub(crate) fn gpu(model: &Arc<Model>) -> Gpu {
+    gpu_on(software(), Lists::new(model.clone()).after(0))
 }
 
 /// The `gpu` engine on `device` for these lists.
-pub(crate) fn gpu_on(device: Device, lists: Lists<'_>) -> Gpu<'_> {
+pub(crate) fn gpu_on(device: Device, lists: Lists) -> Gpu {
     let tuning = device.tuning();
     Gpu::with(device, lists, LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
 }
 
 /// 20,000 wall ends: more vertices than two uniform buffers hold.
-pub(crate) fn posts() -> Model {
+pub(crate) fn posts() -> Arc<Model> {
     let n = 100;
     let walls = (0..n * n).map(|k| {
         let centre = DVec2::new(f64::from(k % n), f64::from(k / n));
         let along = 0.4 * DVec2::from_angle(f64::from(k) * 2.4);
         [centre - along, centre + along]
     });
-    Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(50.5, 49.5))).unwrap()
+    Arc::new(Model::new(Scene::new(walls).unwrap(), Some(DVec2::new(50.5, 49.5))).unwrap())
 }

@@ -1,5 +1,7 @@
 //! Traces that touch walls: small cases worked out by hand.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use tautline::engine::{Engine, Funnel, Job, Reference};
 use tautline::rope::{Status, replay};
@@ -8,9 +10,9 @@ use tautline::trace::{Trace, ViolationKind, settle};
 
 type P = [f64; 2];
 
-fn model(anchor: P, walls: &[[P; 2]]) -> Model {
+fn model(anchor: P, walls: &[[P; 2]]) -> Arc<Model> {
     let walls = walls.iter().map(|w| w.map(DVec2::from));
-    Model::new(Scene::new(walls).unwrap(), Some(anchor.into())).unwrap()
+    Arc::new(Model::new(Scene::new(walls).unwrap(), Some(anchor.into())).unwrap())
 }
 
 fn trace(points: &[P]) -> Trace {
@@ -18,7 +20,7 @@ fn trace(points: &[P]) -> Trace {
 }
 
 /// The taut rope after every step, as vertices with `<` for left and `>` for right; both methods must agree on it.
-fn ropes(model: &Model, points: &[P]) -> Vec<String> {
+fn ropes(model: &Arc<Model>, points: &[P]) -> Vec<String> {
     let trace = trace(points);
     let settled = settle(model, &trace);
     assert_eq!(settled.violation(), None);
@@ -32,8 +34,8 @@ fn ropes(model: &Model, points: &[P]) -> Vec<String> {
         });
         ropes
     };
-    let ropes = by(&mut Reference::new(model));
-    assert_eq!(ropes, by(&mut Funnel::new(model)));
+    let ropes = by(&mut Reference::new(model.clone()));
+    assert_eq!(ropes, by(&mut Funnel::new(model.clone())));
     ropes
 }
 
@@ -186,13 +188,13 @@ fn an_anchor_on_the_middle_of_a_wall() {
 }
 
 /// A solid box, 3 wide and 1 high, with vertices 0 (1, 1), 1 (4, 1), 2 (4, 2), 3 (1, 2).
-fn solid(anchor: P, inside: Inside) -> Model {
+fn solid(anchor: P, inside: Inside) -> Arc<Model> {
     let corners = [[1.0, 1.0], [4.0, 1.0], [4.0, 2.0], [1.0, 2.0]].map(DVec2::from);
     let wall = |i: usize| Wall { ends: [corners[i], corners[(i + 1) % 4]], object: 0, reversed: false };
     // Counter-clockwise: its inside is on the left, so seen the other way round it is on the right.
     let wall = |i| Wall { reversed: inside == Inside::Right, ..wall(i) };
     let scene = Scene::of(vec![Object { inside, ..Object::default() }], (0..4).map(wall)).unwrap();
-    Model::new(scene, Some(anchor.into())).unwrap()
+    Arc::new(Model::new(scene, Some(anchor.into())).unwrap())
 }
 
 #[test]
@@ -232,13 +234,13 @@ fn solids_that_touch_and_holes() {
     };
     let [left, right] = [ring([0.0, 0.0], [1.0, 1.0]), ring([1.0, 0.0], [2.0, 1.0])];
     let touching = scene(&[&[left], &[right]]);
-    let m = Model::new(touching, Some([1.0, 1.0].into())).unwrap();
+    let m = Arc::new(Model::new(touching, Some([1.0, 1.0].into())).unwrap());
     assert_eq!(violation(&m, &[[1.0, 1.0], [1.0, 0.5]]), Some((1, ViolationKind::EntersSolid, 1)));
     let frame = scene(&[&[ring([0.0, 0.0], [4.0, 4.0]), ring([1.0, 1.0], [3.0, 3.0])]]);
-    let m = Model::new(frame.clone(), Some([1.0, 1.0].into())).unwrap();
+    let m = Arc::new(Model::new(frame.clone(), Some([1.0, 1.0].into())).unwrap());
     assert_eq!(ropes(&m, &[[3.0, 1.0], [2.0, 2.0]]), ["", ""]);
     assert_eq!(violation(&m, &[[0.5, 0.5]]), Some((0, ViolationKind::EntersSolid, 4)));
-    let m = Model::new(frame, Some([0.0, 0.0].into())).unwrap();
+    let m = Arc::new(Model::new(frame, Some([0.0, 0.0].into())).unwrap());
     assert_eq!(violation(&m, &[[0.5, 0.5]]), Some((0, ViolationKind::EntersSolid, 0)));
 }
 
@@ -262,7 +264,7 @@ fn traces_along_real_coasts() {
     let coast = scene.vertices().to_vec();
     let mut touched = 0;
     for start in (0..coast.len()).step_by(97) {
-        let m = Model::new(scene.clone(), Some(coast[start])).unwrap();
+        let m = Arc::new(Model::new(scene.clone(), Some(coast[start])).unwrap());
         let (mut here, mut points, mut draw) = (start, vec![coast[start]], start as u64);
         for _ in 0..60 {
             // Knuth's linear congruential generator.
@@ -317,7 +319,7 @@ fn a_trace_through_walls_comes_to_an_end() {
     let m = model([0.013, 0.017], &walls);
     let settled = settle(&m, &trace(&points));
     assert!(settled.violation().is_some());
-    let record = Reference::new(&m).evaluate(&[settled], &Job::new()).unwrap().remove(0);
+    let record = Reference::new(m.clone()).evaluate(&[settled], &Job::new()).unwrap().remove(0);
     assert_eq!((record.status, record.steps), (Status::Violation, 41));
 }
 

@@ -77,9 +77,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     [&args.events, &args.points].into_iter().flatten().try_for_each(|path| check_output(path))?;
     let target = args.draw.as_deref().map(|path| Target::new(path, &args.look)).transpose()?;
     let mut engine: Box<dyn Engine> = match plan.run.precision {
-        Precision::Certified => Box::new(Reference::new(model)),
+        Precision::Certified => Box::new(Reference::new(model.clone())),
         // What the study saw, right or wrong.
-        Precision::Fast => Box::new(FastGpu::new(Device::open(&AdapterChoice::Best)?, model)?),
+        Precision::Fast => Box::new(FastGpu::new(Device::open(&AdapterChoice::Best)?, model.clone())?),
     };
     let record = engine.evaluate(std::slice::from_ref(&trace), &Job::new())?.remove(0);
     if let Some(target) = &target {

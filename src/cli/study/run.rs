@@ -174,7 +174,7 @@ fn proceed(
     guard: &Guard,
     study: &Study,
     mut state: State,
-    Engines { mut engines, on }: Engines<'_>,
+    Engines { mut engines, on }: Engines,
     as_json: bool,
 ) -> Result<(), Failure> {
     let job = Job::new();
@@ -240,15 +240,15 @@ fn proceed(
 }
 
 /// The engines, one for each anchor, and in words what they run on.
-struct Engines<'s> {
-    engines: Vec<Box<dyn Engine + 's>>,
+struct Engines {
+    engines: Vec<Box<dyn Engine>>,
     on: String,
 }
 
-impl<'s> Engines<'s> {
+impl Engines {
     /// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on purpose, and
     /// `funnel` knows no contacts passed straight.
-    fn open(args: &EngineArgs, study: &'s Study) -> Result<Self, Failure> {
+    fn open(args: &EngineArgs, study: &Study) -> Result<Self, Failure> {
         let mut all = Engines { engines: Vec::new(), on: String::new() };
         for model in study.models() {
             let (engine, on) = args.open_for(study.plan().run.precision, model)?;
@@ -306,7 +306,7 @@ fn cost(
 }
 
 /// How many wall ends the scene has, and how many of them the engine of each anchor tries.
-fn tried(study: &Study, engines: &[Box<dyn Engine + '_>]) -> serde_json::Value {
+fn tried(study: &Study, engines: &[Box<dyn Engine>]) -> serde_json::Value {
     let remaining: Option<Vec<usize>> = engines.iter().map(|engine| engine.remaining()).collect();
     json!({"vertices": study.models()[0].vertices().len(), "remaining": remaining})
 }

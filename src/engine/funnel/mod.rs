@@ -14,6 +14,8 @@ mod mesh;
 mod triangle;
 mod word;
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use self::drag::Drag;
@@ -27,15 +29,15 @@ use crate::trace::SettledTrace;
 ///
 /// A step costs O(1 + edges crossed) times the logarithm of the corners that the funnel's ends and the rope's last corner
 /// pass over. The triangulation is made once, and anew only for traces that lead far outside the scene.
-pub struct Funnel<'m> {
-    model: &'m Model,
+pub struct Funnel {
+    model: Arc<Model>,
     mesh: Option<Mesh>,
     final_only: bool,
 }
 
-impl<'m> Funnel<'m> {
+impl Funnel {
     /// An engine for `model`.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: Arc<Model>) -> Self {
         Funnel { model, mesh: None, final_only: false }
     }
 
@@ -46,15 +48,16 @@ impl<'m> Funnel<'m> {
     /// `max_depth` are the final rope's too, and its events wrap the final rope, all in the last step.
     ///
     /// ```
+    /// use std::sync::Arc;
     /// use tautline::engine::{Engine, Funnel, Job};
     /// use tautline::scene::{Model, Scene};
     /// use tautline::trace::{Trace, settle};
     /// let walls = [[[1.0, 0.0].into(), [1.0, 5.0].into()]];
-    /// let model = Model::new(Scene::new(walls)?, Some([0.0, 1.0].into()))?;
+    /// let model = Arc::new(Model::new(Scene::new(walls)?, Some([0.0, 1.0].into()))?);
     /// // Down below the wall, up behind it and a little back.
     /// let points = [[0.0, -1.0], [3.0, -1.0], [3.0, 4.0], [2.0, 0.0]].map(Into::into).to_vec();
     /// let trace = settle(&model, &Trace { id: 0, points });
-    /// let record = Funnel::new(&model).final_only().evaluate(&[trace], &Job::new())?.remove(0);
+    /// let record = Funnel::new(model).final_only().evaluate(&[trace], &Job::new())?.remove(0);
     /// assert_eq!((record.depth, record.max_length), (1, record.length));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -65,20 +68,21 @@ impl<'m> Funnel<'m> {
     }
 }
 
-impl Engine for Funnel<'_> {
+impl Engine for Funnel {
     fn name(&self) -> &'static str {
         "funnel"
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
         job.go_on()?;
-        let bounds = bounds(self.model, traces);
+        let model = &*self.model;
+        let bounds = bounds(model, traces);
         let mesh = match self.mesh.take() {
             Some(mesh) if mesh.covers(bounds) => mesh,
-            _ => Mesh::new(self.model, bounds)?,
+            _ => Mesh::new(model, bounds)?,
         };
         let mesh = self.mesh.insert(mesh);
-        let (model, final_only) = (self.model, self.final_only);
+        let final_only = self.final_only;
         let evaluate = |drag: &mut Drag, trace| drag.evaluate(model, mesh, trace, final_only, job);
         traces.par_iter().map_init(Drag::default, evaluate).collect()
     }

@@ -1,5 +1,7 @@
 //! One extreme case.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use crate::scene::{Model, Scene};
@@ -20,8 +22,8 @@ pub struct Extreme {
 
 impl Extreme {
     /// The scene, ready to be evaluated. O(walls log walls).
-    pub fn model(&self) -> Model {
+    pub fn model(&self) -> Arc<Model> {
         let scene = Scene::new(self.walls.iter().copied()).expect("all coordinates can be computed with");
-        Model::new(scene, Some(self.anchor)).expect("the anchor stands off the walls or at an end")
+        Arc::new(Model::new(scene, Some(self.anchor)).expect("the anchor stands off the walls or at an end"))
     }
 }

@@ -1,5 +1,7 @@
 //! What families are made with.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::extreme::Extreme;
@@ -75,6 +77,6 @@ pub(super) fn way(model: &Model, stops: usize, mut next: impl FnMut(DVec2) -> DV
 }
 
 /// The model of some walls.
-pub(super) fn model(walls: &[[DVec2; 2]], anchor: DVec2) -> Model {
+pub(super) fn model(walls: &[[DVec2; 2]], anchor: DVec2) -> Arc<Model> {
     Extreme { name: String::new(), walls: walls.to_vec(), anchor, traces: vec![] }.model()
 }

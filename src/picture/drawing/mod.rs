@@ -48,16 +48,18 @@ const RAYS: usize = 12;
 /// the rays of the pivot dash-dotted and the unwrapping ray dotted. A key below says what occurs in the picture.
 ///
 /// ```
+/// use std::sync::Arc;
+///
 /// use tautline::engine::{Engine, Job, Reference};
 /// use tautline::picture::{Drawing, Theme, png};
 /// use tautline::scene::{Model, Scene};
 /// use tautline::trace::{Trace, settle};
 ///
 /// let scene = Scene::new([[[4.0, -3.0].into(), [4.0, 1.0].into()]])?;
-/// let model = Model::new(scene, Some([0.0, 0.0].into()))?;
+/// let model = Arc::new(Model::new(scene, Some([0.0, 0.0].into()))?);
 /// let points = [[2.0, 2.0], [5.0, 3.0], [7.0, -1.0]].map(Into::into).to_vec();
 /// let trace = settle(&model, &Trace { id: 0, points });
-/// let record = Reference::new(&model).evaluate(&[trace.clone()], &Job::new())?.remove(0);
+/// let record = Reference::new(model.clone()).evaluate(&[trace.clone()], &Job::new())?.remove(0);
 ///
 /// let drawing = Drawing::new(&model).with(&trace, &record).theme(Theme::Dark);
 /// let last: String = drawing.svg()?;              // after the last step

@@ -2,6 +2,8 @@
 
 mod situations;
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::drawing::{Drawing, Panel};
@@ -38,9 +40,9 @@ const RAYS: usize = 6;
 
 impl Situation {
     /// The walls and the anchor.
-    pub fn model(&self) -> Model {
+    pub fn model(&self) -> Arc<Model> {
         let scene = Scene::new(self.walls.iter().map(|ends| ends.map(DVec2::from))).expect("small numbers");
-        Model::new(scene, Some(self.anchor.into())).expect("the anchor stands in no wall")
+        Arc::new(Model::new(scene, Some(self.anchor.into())).expect("the anchor stands in no wall"))
     }
 
     /// The trace, settled against that model; its number is 0.
@@ -52,7 +54,7 @@ impl Situation {
     pub fn svg(&self) -> String {
         let model = self.model();
         let trace = self.trace(&model);
-        let records = Reference::new(&model).evaluate(std::slice::from_ref(&trace), &Job::new());
+        let records = Reference::new(model.clone()).evaluate(std::slice::from_ref(&trace), &Job::new());
         let record = records.expect("nobody stops this job").remove(0);
         let drawing = Drawing::new(&model).with(&trace, &record);
         let panels: Vec<Panel> =

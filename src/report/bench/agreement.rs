@@ -98,6 +98,8 @@ fn events(record: &TraceRecord) -> Events {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::engine::{Engine, Job, Reference};
     use crate::example::{BuiltIn, Walker, settled_walks};
@@ -105,9 +107,9 @@ mod tests {
     use crate::scene::Model;
 
     fn records() -> Vec<TraceRecord> {
-        let model = Model::new(BuiltIn::Random(50).scene(1), None).unwrap();
+        let model = Arc::new(Model::new(BuiltIn::Random(50).scene(1), None).unwrap());
         let traces = settled_walks(&model, Walker { step: 0.03, steps: 200, seed: 1 }, 5);
-        let records = Reference::new(&model).evaluate(&traces, &Job::new()).unwrap();
+        let records = Reference::new(model.clone()).evaluate(&traces, &Job::new()).unwrap();
         assert!(records.iter().all(|r| r.events.len() > 1 && !r.wraps.is_empty()));
         records
     }

@@ -1,5 +1,7 @@
 //! The table of what is measured against each other: one line a row of the report.
 
+use std::sync::Arc;
+
 use crate::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Note, Precision, Reference};
 use crate::fast::MOST_LEGS;
 use crate::gpu::Device;
@@ -43,13 +45,13 @@ pub(in crate::report) enum Promise {
 #[derive(Clone, Copy)]
 enum Open {
     /// On a GPU.
-    Gpu(for<'m> fn(Gpu<'m>, usize) -> Gpu<'m>),
+    Gpu(fn(Gpu, usize) -> Gpu),
     /// On a GPU that decides alone.
     FastGpu,
     /// On all cores.
-    Threads(for<'m> fn(&'m Model, usize) -> Box<dyn Engine + 'm>),
+    Threads(fn(Arc<Model>, usize) -> Box<dyn Engine>),
     /// On one thread.
-    Thread(for<'m> fn(&'m Model) -> Box<dyn Engine + 'm>),
+    Thread(fn(Arc<Model>) -> Box<dyn Engine>),
 }
 
 /// The product: a candidate pass on the GPU over windows of steps.
@@ -181,11 +183,11 @@ impl Contender {
     }
 
     /// Makes the engine for `model`; `None` if it needs a GPU and there is none.
-    pub(in crate::report) fn open<'m>(
+    pub(in crate::report) fn open(
         &self,
-        model: &'m Model,
+        model: Arc<Model>,
         gear: &Gear,
-    ) -> Result<Option<Box<dyn Engine + 'm>>, EngineError> {
+    ) -> Result<Option<Box<dyn Engine>>, EngineError> {
         Ok(Some(match (self.open, &gear.device) {
             (Open::Gpu(_) | Open::FastGpu, None) => return Ok(None),
             (Open::Gpu(shape), Some(device)) => Box::new(shape(Gpu::new(device.clone(), model)?, gear.window)),

@@ -170,7 +170,7 @@ fn known(work: &Work, traces: &[SettledTrace]) -> Result<Agreement, BenchError> 
     let mut agreement = Agreement::new(traces.len());
     let cpu = CONTENDERS.into_iter().find(|c| c.engine == "cpu");
     if let Some(cpu) = cpu {
-        agreement.check(cpu, &Cpu::new(&work.model).evaluate(traces, &Job::new())?)?;
+        agreement.check(cpu, &Cpu::new(work.model.clone()).evaluate(traces, &Job::new())?)?;
     }
     Ok(agreement)
 }

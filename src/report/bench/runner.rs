@@ -30,7 +30,7 @@ const MOST_TIMES: usize = 10_000;
 pub(super) struct Runner<'w> {
     pub contender: Contender,
     work: &'w Work,
-    engine: Box<dyn Engine + 'w>,
+    engine: Box<dyn Engine>,
     /// How many of the traces it runs on.
     traces: usize,
     /// Walks that are shorter than those of the work, in place of these.
@@ -48,7 +48,7 @@ pub(super) struct Run {
 impl<'w> Runner<'w> {
     /// Opens the contender's engine; `None` if it needs a GPU and there is none.
     pub(super) fn open(contender: Contender, work: &'w Work, gear: &Gear) -> Result<Option<Self>, EngineError> {
-        let Some(engine) = contender.open(&work.model, gear)? else { return Ok(None) };
+        let Some(engine) = contender.open(work.model.clone(), gear)? else { return Ok(None) };
         let steps = if contender.takes_many() { FEWEST_STEPS } else { work.setting.steps };
         let mut runner = Runner { contender, work, engine, traces: 1, short: None, times: 1 };
         runner.shorten(steps);

@@ -3,6 +3,7 @@
 mod trial;
 
 use std::iter::Sum;
+use std::sync::Arc;
 
 use glam::DVec2;
 use rayon::prelude::*;
@@ -50,9 +51,9 @@ impl Filter {
     /// # Errors
     ///
     /// What the engine `cpu` fails with.
-    pub fn of_walks(model: &Model, traces: &[SettledTrace]) -> Result<Filter, EngineError> {
-        let records = Cpu::new(model).evaluate(traces, &Job::new())?;
-        let lists = Lists::new(model).after(0);
+    pub fn of_walks(model: &Arc<Model>, traces: &[SettledTrace]) -> Result<Filter, EngineError> {
+        let records = Cpu::new(model.clone()).evaluate(traces, &Job::new())?;
+        let lists = Lists::new(model.clone()).after(0);
         let all = traces.par_iter().zip(&records).map(|(trace, record)| of_walk(&lists, trace, record));
         Ok(all.collect::<Vec<_>>().into_iter().sum())
     }
@@ -83,7 +84,7 @@ impl Sum for Filter {
     }
 }
 
-fn of_walk(lists: &Lists<'_>, trace: &SettledTrace, record: &TraceRecord) -> Filter {
+fn of_walk(lists: &Lists, trace: &SettledTrace, record: &TraceRecord) -> Filter {
     let (model, points) = (lists.model(), trace.points());
     let mut pivots = Vec::with_capacity(points.len());
     replay(model.anchor(), model.vertices(), points.len(), &record.events, |_, rope| {
@@ -113,7 +114,7 @@ fn of_walk(lists: &Lists<'_>, trace: &SettledTrace, record: &TraceRecord) -> Fil
 }
 
 /// The query for the first of the legs between `points`, and how many these are.
-fn asked_of(lists: &Lists<'_>, pivot: DVec2, points: &[DVec2], slopes: &mut Slopes) -> (usize, Query) {
+fn asked_of(lists: &Lists, pivot: DVec2, points: &[DVec2], slopes: &mut Slopes) -> (usize, Query) {
     match Window::fold(Simd::detected(), pivot, None, points, slopes) {
         Some(window) => (window.legs, window.query(lists.frame(), pivot)),
         None => (1, Query::leg(lists.frame(), pivot, points[0], points[1])),

@@ -205,7 +205,7 @@ impl<'v> Lane<'v> {
     /// Evaluates the sample once, on an engine that is made and warmed up before the clock starts.
     fn run(&self, gear: &Gear) -> Result<Option<Run>, EngineError> {
         let traces = self.sample();
-        let Some(mut engine) = self.method.open(&self.variant.model, gear)? else { return Ok(None) };
+        let Some(mut engine) = self.method.open(self.variant.model.clone(), gear)? else { return Ok(None) };
         if self.method.takes_many() {
             engine.evaluate(&traces[..FIRST.min(traces.len())], &Job::new())?;
         }

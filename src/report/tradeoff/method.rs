@@ -1,5 +1,7 @@
 //! What is compared: every way to turn traces into ropes.
 
+use std::sync::Arc;
+
 use crate::engine::{Engine, EngineError};
 use crate::report::bench::{
     CPU, Contender, FAST, FUNNEL, FUNNEL_FINAL, GPU, Gear, NOTE, NOTE_FURTHEST, Promise, REFERENCE,
@@ -63,7 +65,7 @@ impl Method {
     }
 
     /// Makes the engine for `model`; `None` if it needs a GPU and there is none.
-    pub(super) fn open<'m>(&self, model: &'m Model, gear: &Gear) -> Result<Option<Box<dyn Engine + 'm>>, EngineError> {
+    pub(super) fn open(&self, model: Arc<Model>, gear: &Gear) -> Result<Option<Box<dyn Engine>>, EngineError> {
         self.contender.open(model, gear)
     }
 }

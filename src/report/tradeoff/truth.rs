@@ -33,14 +33,14 @@ impl<'v> Truth<'v> {
     /// Engines that fail, and two exact ones that differ.
     pub(super) fn of(exact: &'v Variant) -> Result<Self, TradeoffError> {
         let model = &exact.model;
-        let records = Cpu::new(model).evaluate(&exact.traces, &Job::new())?;
+        let records = Cpu::new(model.clone()).evaluate(&exact.traces, &Job::new())?;
         let mut tests = 0;
         let affordable = |trace: &&SettledTrace| {
             tests += trace.steps() as u64 * model.vertices().len() as u64;
             tests <= TESTS
         };
         let vouched = exact.traces.iter().take_while(affordable).count().max(1).min(exact.traces.len());
-        let asked = Reference::new(model).evaluate(&exact.traces[..vouched], &Job::new())?;
+        let asked = Reference::new(model.clone()).evaluate(&exact.traces[..vouched], &Job::new())?;
         let truth = Truth { model, records, vouched };
         match asked.iter().zip(&truth.records).find(|(one, other)| one != other) {
             Some((record, _)) => Err(truth.disagreement("reference", record.trace).into()),

@@ -12,8 +12,8 @@ fn study() -> Study {
     Study::open(Plan::parse(STUDY).unwrap(), Path::new("")).unwrap()
 }
 
-fn engines(study: &Study) -> Vec<Box<dyn Engine + '_>> {
-    study.models().iter().map(|model| Box::new(Cpu::new(model)) as _).collect()
+fn engines(study: &Study) -> Vec<Box<dyn Engine>> {
+    study.models().iter().map(|model| Box::new(Cpu::new(model.clone())) as _).collect()
 }
 
 /// Runs a shard to its end in groups of at most `size` traces, and stops after every one of them: the state is saved, and read for

@@ -112,7 +112,7 @@ fn a_rope_of_400_000_contacts_is_written_and_read_back() {
     folder.done(&format!("eval --scene s.json --anchor={anchor} --traces t.parquet --out r.jsonl"));
     let model = case.model();
     let trace = settle(&model, &case.traces[0]);
-    let record = Reference::new(&model).evaluate(&[trace], &Job::new()).unwrap().remove(0);
+    let record = Reference::new(model.clone()).evaluate(&[trace], &Job::new()).unwrap().remove(0);
     assert!(record.wraps.len() > 399_990, "{} contacts", record.wraps.len());
     let result: Value = serde_json::from_str(&folder.text("r.jsonl")).unwrap();
     assert_eq!((result["length"].as_f64(), result["depth"].as_u64()), (Some(record.length), Some(record.depth.into())));

@@ -1,5 +1,6 @@
 //! Any scene and any traces: all engines give the reference's ropes.
 
+use std::sync::Arc;
 use std::sync::LazyLock;
 use std::{iter, slice};
 
@@ -18,10 +19,10 @@ pub(super) fn cpu(input: &[u8]) {
     let Some((model, traces)) = recipe(input) else { return };
     let truth = agree(&model, &traces);
     let others = [
-        Cpu::new(&model).window(1),
-        Cpu::new(&model).keep_all(),
-        Cpu::with_lists(Lists::new(&model).after(0)),
-        Cpu::with_lists(Lists::new(&model).after(0)).window(3),
+        Cpu::new(model.clone()).window(1),
+        Cpu::new(model.clone()).keep_all(),
+        Cpu::with_lists(Lists::new(model.clone()).after(0)),
+        Cpu::with_lists(Lists::new(model.clone()).after(0)).window(3),
     ];
     for mut other in others {
         assert_eq!(run(&mut other, &traces), truth);
@@ -29,7 +30,7 @@ pub(super) fn cpu(input: &[u8]) {
     for (trace, record) in traces.iter().zip(&truth) {
         is_sound(&model, trace, record);
         if trace.violation().is_none() {
-            match Funnel::new(&model).evaluate(slice::from_ref(trace), &Job::new()) {
+            match Funnel::new(model.clone()).evaluate(slice::from_ref(trace), &Job::new()) {
                 Ok(ropes) => assert_eq!(without_events(&ropes[0]), without_events(record)),
                 Err(EngineError::Unfit { .. }) => {}
                 Err(error) => panic!("{error}"),
@@ -41,11 +42,12 @@ pub(super) fn cpu(input: &[u8]) {
 
 /// The same traces on coarser terms, among the walls as they are and simplified: `cpu` against `reference`. How coarse, the input's
 /// length says.
-fn coarser(model: &Model, traces: &[SettledTrace], length: usize) {
+fn coarser(model: &Arc<Model>, traces: &[SettledTrace], length: usize) {
     let (low, high) = model.bounds();
     let tolerance = (high - low).max_element() * 2f64.powi(-(length as i32 % 24));
     let simple = simplify(model.scene(), &[model.anchor()], tolerance).ok();
-    let simple = simple.map(|scene| Model::new(scene, Some(model.anchor())).unwrap_or_else(|e| panic!("{e}")));
+    let simple =
+        simple.map(|scene| Arc::new(Model::new(scene, Some(model.anchor())).unwrap_or_else(|e| panic!("{e}"))));
     for used in iter::once(model).chain(&simple) {
         let coarse: Vec<_> = traces.iter().map(|trace| trace.clone().coarsened(used, 1 + length % 5)).collect();
         let records = agree(used, &coarse);
@@ -58,21 +60,21 @@ pub(super) fn gpu(input: &[u8]) {
     static DEVICE: LazyLock<Device> =
         LazyLock::new(|| Device::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}")));
     let Some((model, traces)) = recipe(input) else { return };
-    let truth = run(&mut Reference::new(&model), &traces);
-    let lists = Lists::new(&model).after(0);
+    let truth = run(&mut Reference::new(model.clone()), &traces);
+    let lists = Lists::new(model.clone()).after(0);
     let gpu = Gpu::with(DEVICE.clone(), lists, LISTS_BUDGET, DEVICE.tuning(), SWEEP_WGSL);
     let mut gpu = gpu.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(run(&mut gpu, &traces), truth);
     assert_eq!(run(&mut gpu.keep_all().window(2), &traces), truth);
-    let mut fast = FastGpu::new(DEVICE.clone(), &model).unwrap_or_else(|e| panic!("{e}"));
+    let mut fast = FastGpu::new(DEVICE.clone(), model.clone()).unwrap_or_else(|e| panic!("{e}"));
     let records = run(&mut fast, &traces);
     traces.iter().zip(&records).for_each(|(trace, record)| is_sound(&model, trace, record));
 }
 
 /// The reference's records, which those of `cpu` must be.
-pub(super) fn agree(model: &Model, traces: &[SettledTrace]) -> Vec<TraceRecord> {
-    let truth = run(&mut Reference::new(model), traces);
-    assert_eq!(run(&mut Cpu::new(model), traces), truth);
+pub(super) fn agree(model: &Arc<Model>, traces: &[SettledTrace]) -> Vec<TraceRecord> {
+    let truth = run(&mut Reference::new(model.clone()), traces);
+    assert_eq!(run(&mut Cpu::new(model.clone()), traces), truth);
     truth
 }
 

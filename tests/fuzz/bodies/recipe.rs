@@ -1,5 +1,7 @@
 //! Makes a scene and traces of any bytes.
 
+use std::sync::Arc;
+
 use arbitrary::{Result, Unstructured};
 use glam::DVec2;
 use tautline::geometry::check_point;
@@ -11,7 +13,7 @@ const WALLS_MAX: usize = 60;
 const STEPS_MAX: usize = 60;
 
 /// A model, and traces that keep to the rules as well as the same with all their steps; `None` where the anchor stands in a wall.
-pub(super) fn recipe(input: &[u8]) -> Option<(Model, Vec<SettledTrace>)> {
+pub(super) fn recipe(input: &[u8]) -> Option<(Arc<Model>, Vec<SettledTrace>)> {
     let mut pieces = Pieces { bytes: Unstructured::new(input), places: vec![DVec2::ZERO] };
     let (mut walls, mut anchor, mut steps) = (Vec::new(), DVec2::ZERO, vec![Vec::new()]);
     while !pieces.bytes.is_empty() {
@@ -30,7 +32,7 @@ pub(super) fn recipe(input: &[u8]) -> Option<(Model, Vec<SettledTrace>)> {
         }
     }
     walls.truncate(WALLS_MAX);
-    let model = Model::new(Scene::new(walls).expect("places are taken"), Some(anchor)).ok()?;
+    let model = Arc::new(Model::new(Scene::new(walls).expect("places are taken"), Some(anchor)).ok()?);
     let mut traces = Vec::new();
     for mut points in steps.into_iter().take(3) {
         points.truncate(STEPS_MAX);

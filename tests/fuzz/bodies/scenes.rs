@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::DVec2;
 use tautline::geometry::check_point;
@@ -49,12 +50,12 @@ fn survives(scene: &Scene, folder: &Path) {
     let anchor = scene.anchor().or(scene.vertices().first().copied());
     let Ok(model) = Model::new(scene.clone(), anchor) else { return };
     if scene.walls().len() <= DRAGGED_MAX {
-        drag(&model);
+        drag(&Arc::new(model));
     }
 }
 
 /// Through the corners of the scene, and over some of its vertices.
-fn drag(model: &Model) {
+fn drag(model: &Arc<Model>) {
     let (low, high) = model.bounds();
     let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
     let around = corners.iter().map(|&p| p * 2.0 - model.anchor()).filter(|&p| check_point(p).is_ok());

@@ -50,8 +50,8 @@ fn is_small(plan: &Plan) -> bool {
 }
 
 fn complete(study: &Study) -> State {
-    let cpu = |model| Box::new(Cpu::new(model)) as Box<dyn Engine>;
-    let mut engines: Vec<_> = study.models().iter().map(|model| cpu(&**model)).collect();
+    let mut engines: Vec<Box<dyn Engine>> =
+        study.models().iter().map(|model| Box::new(Cpu::new(model.clone())) as _).collect();
     let state = Mutex::new(State::new(study, Shard::WHOLE));
     let done = run::<Infallible>(study, &mut engines, &state, &Job::new(), |_, _, _| Ok(()));
     done.unwrap_or_else(|e| panic!("{e}"));

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use tautline::ReadError;
 use tautline::example::lattice_walls;
@@ -16,7 +16,8 @@ const POINTS_MAX: usize = 200;
 
 /// Reads `input` as the file `name`.
 pub(super) fn read(name: &str, input: &[u8], folder: &Path) {
-    static MODEL: LazyLock<Model> = LazyLock::new(|| Model::new(lattice_walls(40, 1), None).expect("it has an anchor"));
+    static MODEL: LazyLock<Arc<Model>> =
+        LazyLock::new(|| Arc::new(Model::new(lattice_walls(40, 1), None).expect("it has an anchor")));
     let path = folder.join(name);
     fs::write(&path, input).expect("the folder can be written to");
     match (read_traces(&path), in_batches(&path)) {

@@ -7,7 +7,7 @@ use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 /// The state of one trace's evaluation; made once a slot and reset for each trace.
-pub(super) struct Walk {
+pub(super) struct Progress {
     pub rope: Rope,
     /// The settled point at which the free end stands, or from which it moves on.
     pub at: usize,
@@ -22,9 +22,9 @@ pub(super) struct Walk {
     wraps_of_a_leg: usize,
 }
 
-impl Walk {
+impl Progress {
     pub(super) fn new() -> Self {
-        Walk {
+        Progress {
             rope: Rope::new(DVec2::ZERO),
             at: 0,
             sweep: Sweep::Start,

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec2};
 
-use super::Phase;
-use super::batch::{Asked, Astray, Player, Shared, Tools};
-use super::course::FIRST_WINDOW;
-use super::walk::Walk;
+use super::rounds::{Asked, Astray, Player, Shared, Tools};
 use crate::candidates::{List, Lists, Window};
+use crate::engine::Phase;
+use crate::engine::progress::Progress;
+use crate::engine::windows::FIRST_WINDOW;
 use crate::fast::{Answer, MOST_LEGS, NOTHING, Question, UNWRAP, rounded};
 use crate::gpu::Deciding;
 use crate::rope::{EventKind, Side, TraceRecord};
@@ -21,7 +21,7 @@ const HAIR: f64 = 1.0 / (1 << 14) as f64;
 
 /// How far a trace has come, and the window that was asked for last.
 pub(super) struct Hasty {
-    walk: Walk,
+    progress: Progress,
     /// How many legs the next window should have.
     width: usize,
     /// How many the last one has.
@@ -52,25 +52,25 @@ impl Player for Hasty {
 
     fn new() -> Self {
         let (plucked, points) = (Vec::new(), Vec::new());
-        Hasty { walk: Walk::new(), width: FIRST_WINDOW, legs: 0, turned: None, wraps: 0, plucked, points }
+        Hasty { progress: Progress::new(), width: FIRST_WINDOW, legs: 0, turned: None, wraps: 0, plucked, points }
     }
 
     fn start(&mut self, model: &Model, trace: &SettledTrace) {
-        self.walk.start(model, trace);
+        self.progress.start(model, trace);
         (self.width, self.turned, self.wraps) = (FIRST_WINDOW, None, 0);
     }
 
     fn finished(&mut self, trace: &SettledTrace) -> Option<TraceRecord> {
-        self.walk.is_done(trace).then(|| self.walk.record(trace))
+        self.progress.is_done(trace).then(|| self.progress.record(trace))
     }
 
     fn at(&self) -> usize {
-        self.walk.at
+        self.progress.at
     }
 
-    fn ask(&mut self, shared: &Shared<'_, '_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Deciding>> {
+    fn ask(&mut self, shared: &Shared<'_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Deciding>> {
         let lists = shared.lists;
-        let (model, frame, rope) = (lists.model(), lists.frame(), &self.walk.rope);
+        let (model, frame, rope) = (lists.model(), lists.frame(), &self.progress.rope);
         let (pivot, contact) = (rope.pivot(), rope.contacts().last());
         let number = contact.map_or(model.vertices().len() as u32, |c| c.vertex);
         // Where a trace crosses walls, the rope can meet anything. Elsewhere lists are made at once, since all answers have
@@ -81,7 +81,7 @@ impl Player for Hasty {
         })?;
         let key = lists.key(number, &list);
         let query = shared.job.time(Phase::Queries, || {
-            let first = self.walk.at;
+            let first = self.progress.at;
             let most = self.width.min(shared.window).min(MOST_LEGS).min(trace.points().len() - 1 - first);
             let mut points = &trace.points()[first..=first + most];
             if !trace.is_plain() {
@@ -122,13 +122,13 @@ impl Player for Hasty {
 
     fn answered(
         &mut self,
-        shared: &Shared<'_, '_>,
+        shared: &Shared<'_>,
         trace: &SettledTrace,
         (list, question): (&List, &Question),
         answer: &Answer,
         _: &mut Tools,
     ) -> Result<(), Astray> {
-        let (first, legs) = (self.walk.at, self.legs);
+        let (first, legs) = (self.progress.at, self.legs);
         if answer.leg == NOTHING {
             self.go_to(trace, first + legs);
             if legs == self.width {
@@ -153,7 +153,7 @@ impl Player for Hasty {
     }
 
     /// Relative to the pivot where the list is its own, so that what is near is as exact as f32 can say.
-    fn coordinates(lists: &Lists<'_>, pivot: u32, list: &List) -> Vec<[f32; 2]> {
+    fn coordinates(lists: &Lists, pivot: u32, list: &List) -> Vec<[f32; 2]> {
         if list.is_of_any() {
             return list.coordinates().collect();
         }
@@ -166,30 +166,30 @@ impl Player for Hasty {
 impl Hasty {
     /// Goes on to point `to`, on the way to which nothing happens.
     fn go_to(&mut self, trace: &SettledTrace, to: usize) {
-        if to == self.walk.at {
+        if to == self.progress.at {
             return;
         }
-        let (pivot, prior) = (self.walk.rope.pivot(), self.walk.rope.prior());
+        let (pivot, prior) = (self.progress.rope.pivot(), self.progress.rope.prior());
         let (mut farthest, mut on_line) = (0.0_f64, false);
-        for &p in &trace.points()[self.walk.at + 1..to] {
+        for &p in &trace.points()[self.progress.at + 1..to] {
             farthest = farthest.max(p.distance_squared(pivot));
             on_line |= (pivot - prior).perp_dot(p - pivot) == 0.0;
         }
         // On that line the rope passes the pivot straight, which only an exact look tells.
         if on_line && pivot != prior {
-            (self.walk.at + 1..to).for_each(|_| self.walk.arrive(trace));
-        } else if to > self.walk.at + 1 {
-            self.walk.skip(trace, to - 1, || farthest);
+            (self.progress.at + 1..to).for_each(|_| self.progress.arrive(trace));
+        } else if to > self.progress.at + 1 {
+            self.progress.skip(trace, to - 1, || farthest);
         }
         // Exactly, so that the greatest length is no less than that at the end.
-        self.walk.arrive(trace);
+        self.progress.arrive(trace);
         (self.turned, self.wraps) = (None, 0);
     }
 
     /// Wraps the rope round a vertex on the leg from where it stands. A leg wraps no vertex twice: where rounding has it go
     /// round in circles, the rest of the leg is given up.
     fn wrap(&mut self, model: &Model, trace: &SettledTrace, vertex: u32, side: Side) {
-        let Walk { rope, at, .. } = &mut self.walk;
+        let Progress { rope, at, .. } = &mut self.progress;
         let wrapped = &rope.contacts()[rope.contacts().len() - self.wraps..];
         if wrapped.iter().any(|c| c.vertex == vertex) {
             let next = *at + 1;
@@ -197,7 +197,7 @@ impl Hasty {
         }
         let (from, to) = (rope.pivot(), model.vertices()[vertex as usize]);
         rope.push(vertex, to, side);
-        self.walk.note(trace, EventKind::Wrap, vertex, side);
+        self.progress.note(trace, EventKind::Wrap, vertex, side);
         self.turned = Some(Turned { start: to - from, to: side, left: None });
         self.wraps += 1;
     }
@@ -205,9 +205,9 @@ impl Hasty {
     /// Unwraps the pivot on the leg from where the rope stands. The rope turns one way on a leg, so what it wraps there it
     /// does not unwrap there; so a leg comes to an end.
     fn unwrap(&mut self, trace: &SettledTrace, to: Side) -> Result<(), Astray> {
-        let (from, prior) = (self.walk.rope.pivot(), self.walk.rope.prior());
-        let contact = self.walk.rope.pop().filter(|_| self.wraps == 0).ok_or(Astray)?;
-        self.walk.note(trace, EventKind::Unwrap, contact.vertex, contact.side);
+        let (from, prior) = (self.progress.rope.pivot(), self.progress.rope.prior());
+        let contact = self.progress.rope.pop().filter(|_| self.wraps == 0).ok_or(Astray)?;
+        self.progress.note(trace, EventKind::Unwrap, contact.vertex, contact.side);
         self.turned = Some(Turned { start: from - prior, to, left: Some(contact.vertex) });
         Ok(())
     }

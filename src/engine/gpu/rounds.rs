@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use super::{EngineError, Job, Phase};
 use crate::candidates::{List, Lists, Simd, Slopes};
+use crate::engine::{EngineError, Job, Phase};
 use crate::gpu::{GpuPass, HALVES, Kernel};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
@@ -33,7 +33,7 @@ pub(super) trait Player: Send {
     fn at(&self) -> usize;
 
     /// The query for what comes next; the trace is not done. `None` if it has gone on without the device.
-    fn ask(&mut self, shared: &Shared<'_, '_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Self::Kernel>>;
+    fn ask(&mut self, shared: &Shared<'_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Self::Kernel>>;
 
     /// The points of the trace that come with the query asked last.
     fn points(&self) -> &[[f32; 2]] {
@@ -43,7 +43,7 @@ pub(super) trait Player: Send {
     /// Goes on as far as the answer suffices.
     fn answered(
         &mut self,
-        shared: &Shared<'_, '_>,
+        shared: &Shared<'_>,
         trace: &SettledTrace,
         asked: (&List, &<Self::Kernel as Kernel>::Query),
         found: &<Self::Kernel as Kernel>::Found,
@@ -51,7 +51,7 @@ pub(super) trait Player: Send {
     ) -> Result<(), Astray>;
 
     /// What the device is to hold of the `list` of which the key is `pivot`.
-    fn coordinates(_: &Lists<'_>, _pivot: u32, list: &List) -> Vec<[f32; 2]> {
+    fn coordinates(_: &Lists, _pivot: u32, list: &List) -> Vec<[f32; 2]> {
         list.coordinates().collect()
     }
 }
@@ -60,8 +60,8 @@ pub(super) trait Player: Send {
 pub(super) struct Astray;
 
 /// What all slots share.
-pub(super) struct Shared<'a, 'm> {
-    pub lists: &'a Lists<'m>,
+pub(super) struct Shared<'a> {
+    pub lists: &'a Lists,
     pub window: usize,
     pub simd: Simd,
     pub job: &'a Job,
@@ -76,7 +76,7 @@ pub(super) struct Shared<'a, 'm> {
 /// Evaluates `traces` in rounds of `pass`, with windows of at most `window` legs.
 pub(super) fn evaluate<P: Player>(
     pass: &mut GpuPass<P::Kernel>,
-    lists: &Lists<'_>,
+    lists: &Lists,
     window: usize,
     traces: &[SettledTrace],
     job: &Job,
@@ -98,7 +98,7 @@ pub(super) fn evaluate<P: Player>(
 
 fn play<'a, P: Player>(
     pass: &mut GpuPass<P::Kernel>,
-    shared: &Shared<'a, '_>,
+    shared: &Shared<'a>,
     halves: &mut [Half<'a, P>],
     records: &mut [Option<TraceRecord>],
 ) -> Result<(), EngineError> {
@@ -148,7 +148,7 @@ impl<'a, P: Player> Half<'a, P> {
     }
 
     /// Takes every slot as far as the answers allow, and on to its next query. Slots without a trace leave.
-    fn advance(&mut self, shared: &Shared<'a, '_>, records: &mut [Option<TraceRecord>]) {
+    fn advance(&mut self, shared: &Shared<'a>, records: &mut [Option<TraceRecord>]) {
         let found = &self.found;
         self.slots.par_iter_mut().with_min_len(64).for_each_init(
             || Loan::from(&shared.tools),
@@ -164,7 +164,7 @@ impl<'a, P: Player> Half<'a, P> {
     }
 
     /// Sends the slots' queries, sorted by list. Those whose lists find no room wait for the next round.
-    fn send(&mut self, pass: &mut GpuPass<P::Kernel>, number: usize, shared: &Shared<'a, '_>) {
+    fn send(&mut self, pass: &mut GpuPass<P::Kernel>, number: usize, shared: &Shared<'a>) {
         shared.job.time(Phase::Upload, || {
             pass.start_round();
             self.order.clear();
@@ -220,7 +220,7 @@ impl<'a, P: Player> Slot<'a, P> {
     }
 
     /// Goes on as far as the answer suffices.
-    fn answered(&mut self, shared: &Shared<'a, '_>, found: &[<P::Kernel as Kernel>::Found], tools: &mut Tools) {
+    fn answered(&mut self, shared: &Shared<'a>, found: &[<P::Kernel as Kernel>::Found], tools: &mut Tools) {
         let (Some((_, trace)), Some(answer)) = (self.trace, self.answer.take()) else { return };
         let Some(Asked { list, query, .. }) = self.asked.take() else { return };
         let before = trace.step(self.player.at());
@@ -231,7 +231,7 @@ impl<'a, P: Player> Slot<'a, P> {
     }
 
     /// Asks what comes next, in the next trace where one is done; nothing if no trace is left.
-    fn ask(&mut self, shared: &Shared<'a, '_>, tools: &mut Tools) {
+    fn ask(&mut self, shared: &Shared<'a>, tools: &mut Tools) {
         // A query that found no room in the last round is sent again.
         if self.asked.is_some() {
             return;

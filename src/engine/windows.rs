@@ -1,7 +1,7 @@
 //! One trace evaluated window by window: asks a query for a window of legs, and goes on exactly once the candidates in it
 //! are known.
 
-use super::walk::Walk;
+use super::progress::Progress;
 use crate::candidates::{Frame, LEGS, Line, Query, ROOM, Simd, Slopes, Window, Wrapping};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
@@ -11,8 +11,8 @@ use crate::trace::SettledTrace;
 pub(crate) const FIRST_WINDOW: usize = 16;
 
 /// How far a trace has come, and the window that was asked for last.
-pub(super) struct Course {
-    walk: Walk,
+pub(super) struct Windows {
+    progress: Progress,
     /// How many legs the next window should have.
     width: usize,
     /// The window asked for; `None` for a single leg that spreads too far for one.
@@ -25,30 +25,37 @@ pub(super) struct Course {
     unwrappings: usize,
 }
 
-impl Course {
+impl Windows {
     pub(super) fn new() -> Self {
-        Course { walk: Walk::new(), width: FIRST_WINDOW, window: None, first: 0, lines: Vec::new(), unwrappings: 0 }
+        Windows {
+            progress: Progress::new(),
+            width: FIRST_WINDOW,
+            window: None,
+            first: 0,
+            lines: Vec::new(),
+            unwrappings: 0,
+        }
     }
 
     /// Stands at the start of `trace`.
     pub(super) fn start(&mut self, model: &Model, trace: &SettledTrace) {
-        self.walk.start(model, trace);
+        self.progress.start(model, trace);
         self.width = FIRST_WINDOW;
     }
 
     /// The record of a trace that is done.
     pub(super) fn finished(&mut self, trace: &SettledTrace) -> Option<TraceRecord> {
-        self.walk.is_done(trace).then(|| self.walk.record(trace))
+        self.progress.is_done(trace).then(|| self.progress.record(trace))
     }
 
     /// The settled point at which the free end stands.
     pub(super) fn at(&self) -> usize {
-        self.walk.at
+        self.progress.at
     }
 
     /// The rope's pivot: a vertex, or their number for the anchor.
     pub(super) fn pivot(&self, model: &Model) -> u32 {
-        self.walk.rope.contacts().last().map_or(model.vertices().len() as u32, |c| c.vertex)
+        self.progress.rope.contacts().last().map_or(model.vertices().len() as u32, |c| c.vertex)
     }
 
     /// The query for what comes next, of at most `most` legs; the trace is not done. Leaves the window's slopes in `slopes`.
@@ -60,11 +67,11 @@ impl Course {
         simd: Simd,
         slopes: &mut Slopes,
     ) -> Query {
-        self.first = self.walk.at;
+        self.first = self.progress.at;
         let points = &trace.points()[self.first..];
         let legs = self.width.min(most).min(points.len() - 1);
-        let pivot = self.walk.rope.pivot();
-        self.window = Window::fold(simd, pivot, self.walk.start_direction(), &points[..=legs], slopes);
+        let pivot = self.progress.rope.pivot();
+        self.window = Window::fold(simd, pivot, self.progress.start_direction(), &points[..=legs], slopes);
         match &self.window {
             Some(window) => window.query(frame, pivot),
             None => Query::leg(frame, pivot, points[0], points[1]),
@@ -73,7 +80,7 @@ impl Course {
 
     /// The square of the greatest distance from the pivot in the window asked for last, in the scene's unit.
     pub(super) fn squared(&self, trace: &SettledTrace) -> f64 {
-        let pivot = self.walk.rope.pivot();
+        let pivot = self.progress.rope.pivot();
         let leg = || trace.points()[self.first..=self.first + 1].iter().map(|a| a.distance_squared(pivot));
         self.window.map_or_else(|| leg().fold(0.0, f64::max), |window| window.squared)
     }
@@ -82,13 +89,14 @@ impl Course {
     pub(super) fn recall(&self, trace: &SettledTrace, simd: Simd, slopes: &mut Slopes) {
         if let Some(window) = &self.window {
             let points = &trace.points()[self.first..=self.first + window.legs];
-            Window::fold(simd, self.walk.rope.pivot(), self.walk.start_direction(), points, slopes);
+            Window::fold(simd, self.progress.rope.pivot(), self.progress.start_direction(), points, slopes);
         }
     }
 
     /// Whether it is certain without looking at its slopes that nothing happens in the window, if it has no candidates.
     pub(super) fn is_quiet(&self) -> bool {
-        self.walk.start_direction().is_none() && self.window.is_some_and(|window| self.unwrapping(&window).is_none())
+        self.progress.start_direction().is_none()
+            && self.window.is_some_and(|window| self.unwrapping(&window).is_none())
     }
 
     /// Asks for fewer legs next time, since the window held too many candidates; false if there are no fewer.
@@ -108,12 +116,12 @@ impl Course {
         slopes: &Slopes,
     ) {
         let Some(window) = self.window else {
-            self.walk.next(model, trace, candidates.iter().copied());
+            self.progress.next(model, trace, candidates.iter().copied());
             return;
         };
         self.find_lines(model, &window, candidates);
         // Where the rope already turned on the first leg, its slopes do not say what is left of it.
-        let turned = self.walk.start_direction().is_some();
+        let turned = self.progress.start_direction().is_some();
         // Up to point `looked` the rope has been measured.
         let mut looked = 0;
         for from in (0..window.legs).step_by(LEGS) {
@@ -126,11 +134,11 @@ impl Course {
                 let leg = from + bit.trailing_zeros() as usize;
                 met ^= bit;
                 if leg > looked {
-                    self.walk.skip(trace, self.first + leg, || simd.farthest(slopes, looked + 1, leg));
+                    self.progress.skip(trace, self.first + leg, || simd.farthest(slopes, looked + 1, leg));
                 }
                 let tried =
                     self.lines[self.unwrappings..].iter().filter(|line| line.met & bit != 0 || turned && leg == 0);
-                if self.walk.next(model, trace, tried.map(|line| line.vertex)).is_some() {
+                if self.progress.next(model, trace, tried.map(|line| line.vertex)).is_some() {
                     self.width = FIRST_WINDOW.max(leg);
                     return;
                 }
@@ -138,7 +146,7 @@ impl Course {
             }
         }
         if window.legs > looked {
-            self.walk.skip(trace, self.first + window.legs, || simd.farthest(slopes, looked + 1, window.legs));
+            self.progress.skip(trace, self.first + window.legs, || simd.farthest(slopes, looked + 1, window.legs));
         }
         self.adapt(&window, candidates.len());
     }
@@ -146,7 +154,7 @@ impl Course {
     /// Goes on to the end of a window that [`is_quiet`](Self::is_quiet) and has no candidates.
     pub(super) fn pass_by(&mut self, trace: &SettledTrace) {
         if let Some(window) = self.window {
-            self.walk.skip(trace, self.first + window.legs, || window.squared);
+            self.progress.skip(trace, self.first + window.legs, || window.squared);
             self.adapt(&window, 0);
         }
     }
@@ -163,14 +171,14 @@ impl Course {
     /// Goes on to the window's end with all vertices, as the reference does.
     pub(super) fn try_all(&mut self, model: &Model, trace: &SettledTrace) {
         let end = self.first + self.window.map_or(1, |w| w.legs);
-        while self.walk.at < end {
-            self.walk.next(model, trace, 0..model.vertices().len() as u32);
+        while self.progress.at < end {
+            self.progress.next(model, trace, 0..model.vertices().len() as u32);
         }
     }
 
     /// Fills `lines` with the unwrapping ray's, if it can be met, and then the candidates'.
     fn find_lines(&mut self, model: &Model, window: &Window, candidates: &[u32]) {
-        let pivot = self.walk.rope.pivot();
+        let pivot = self.progress.rope.pivot();
         self.lines.clear();
         self.lines.extend(self.unwrapping(window).map(|line| Wrapping::new(0, line)));
         self.unwrappings = self.lines.len();
@@ -182,7 +190,7 @@ impl Course {
 
     /// The line of the unwrapping ray, if it can pass through the window.
     fn unwrapping(&self, window: &Window) -> Option<Line> {
-        let rope = &self.walk.rope;
+        let rope = &self.progress.rope;
         if rope.contacts().is_empty() {
             return None;
         }

@@ -1,27 +1,30 @@
 //! The engine of the product: the candidate pass in a compute shader, pushes and pops on the CPU.
 
-use super::course::Course;
-use super::{Engine, EngineError, Job, WINDOW, batch};
+use std::sync::Arc;
+
+use super::rounds;
 use crate::candidates::{LISTS_BUDGET, Lists};
+use crate::engine::windows::Windows;
+use crate::engine::{Engine, EngineError, Job, WINDOW};
 use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass, HALVES, SWEEP_WGSL, Tuning};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::{SettledTrace, bounds};
 
 /// Evaluates traces on a GPU, for one model.
-pub struct Gpu<'m> {
-    lists: Lists<'m>,
+pub struct Gpu {
+    lists: Lists,
     pass: GpuPass,
     window: usize,
 }
 
-impl<'m> Gpu<'m> {
+impl Gpu {
     /// An engine for `model` on an opened adapter.
     ///
     /// # Errors
     ///
     /// What the device complains of, or what of its f32 exact ropes cannot rely on.
-    pub fn new(device: Device, model: &'m Model) -> Result<Self, GpuError> {
+    pub fn new(device: Device, model: Arc<Model>) -> Result<Self, GpuError> {
         let tuning = device.tuning();
         Self::with(device, Lists::new(model), LISTS_BUDGET, tuning, SWEEP_WGSL)
     }
@@ -32,7 +35,7 @@ impl<'m> Gpu<'m> {
     /// # Errors
     ///
     /// As [`new`](Self::new), be it the shader or the memory.
-    pub fn with(device: Device, lists: Lists<'m>, budget: usize, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
+    pub fn with(device: Device, lists: Lists, budget: usize, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
         device.certify()?;
         let n = lists.model().vertices().len();
         let pass = GpuPass::new(device, lists.keys(), n, budget, tuning, wgsl)?;
@@ -66,12 +69,12 @@ impl<'m> Gpu<'m> {
     }
 
     /// The lists that it has made so far.
-    pub fn lists(&self) -> &Lists<'m> {
+    pub fn lists(&self) -> &Lists {
         &self.lists
     }
 }
 
-impl Engine for Gpu<'_> {
+impl Engine for Gpu {
     fn name(&self) -> &'static str {
         "gpu"
     }
@@ -80,7 +83,7 @@ impl Engine for Gpu<'_> {
         if bounds(traces).is_some_and(|bounds| self.lists.cover(bounds)) {
             self.pass.forget();
         }
-        batch::evaluate::<Course>(&mut self.pass, &self.lists, self.window, traces, job)
+        rounds::evaluate::<Windows>(&mut self.pass, &self.lists, self.window, traces, job)
     }
 
     fn batch(&self) -> usize {

@@ -1,44 +1,44 @@
 //! A trace on a device that finds candidates: the exact update goes on among those that an answer names.
 
-use super::Phase;
-use super::batch::{Asked, Astray, Player, Shared, Tools};
-use super::course::Course;
+use super::rounds::{Asked, Astray, Player, Shared, Tools};
 use crate::candidates::{Found, List, Query, ROOM};
+use crate::engine::Phase;
+use crate::engine::windows::Windows;
 use crate::gpu::Sweeping;
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
-impl Player for Course {
+impl Player for Windows {
     type Kernel = Sweeping;
 
     fn new() -> Self {
-        Course::new()
+        Windows::new()
     }
 
     fn start(&mut self, model: &Model, trace: &SettledTrace) {
-        Course::start(self, model, trace);
+        Windows::start(self, model, trace);
     }
 
     fn finished(&mut self, trace: &SettledTrace) -> Option<TraceRecord> {
-        Course::finished(self, trace)
+        Windows::finished(self, trace)
     }
 
     fn at(&self) -> usize {
-        Course::at(self)
+        Windows::at(self)
     }
 
-    fn ask(&mut self, shared: &Shared<'_, '_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Sweeping>> {
+    fn ask(&mut self, shared: &Shared<'_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Sweeping>> {
         let (lists, job) = (shared.lists, shared.job);
         let model = lists.model();
         let query = job.time(Phase::Queries, || {
-            Course::ask(self, lists.frame(), trace, shared.window, shared.simd, &mut tools.slopes)
+            Windows::ask(self, lists.frame(), trace, shared.window, shared.simd, &mut tools.slopes)
         });
         if trace.breaks_rules() {
             // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
-            let before = Course::at(self);
+            let before = Windows::at(self);
             self.try_all(model, trace);
-            job.count_tests(((Course::at(self) - before) * model.vertices().len()) as u64);
+            job.count_tests(((Windows::at(self) - before) * model.vertices().len()) as u64);
             return None;
         }
         let pivot = self.pivot(model);
@@ -52,7 +52,7 @@ impl Player for Course {
 
     fn answered(
         &mut self,
-        shared: &Shared<'_, '_>,
+        shared: &Shared<'_>,
         trace: &SettledTrace,
         (list, query): (&List, &Query),
         found: &Found,
@@ -85,8 +85,8 @@ impl Player for Course {
 
 /// Goes on through the window that was asked for last, whose pivot is not worth a list: it is answered here and now.
 fn look(
-    course: &mut Course,
-    shared: &Shared<'_, '_>,
+    windows: &mut Windows,
+    shared: &Shared<'_>,
     trace: &SettledTrace,
     pivot: u32,
     query: &Query,
@@ -95,9 +95,9 @@ fn look(
     let Tools { slopes, scratch, found } = tools;
     let job = shared.job;
     let tried = job.time(Phase::Kernel, || shared.lists.look_into(pivot, query, shared.simd, scratch, found));
-    if found.len() <= ROOM || !course.narrow() {
+    if found.len() <= ROOM || !windows.narrow() {
         let model = shared.lists.model();
-        job.time(Phase::Update, || course.go_on(model, trace, found, shared.simd, slopes));
+        job.time(Phase::Update, || windows.go_on(model, trace, found, shared.simd, slopes));
     }
     job.count_tests(tried as u64);
 }

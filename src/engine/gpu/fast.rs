@@ -1,8 +1,11 @@
 //! The engine of the product in a hurry: the compute shader decides in f32, and nothing confirms it.
 
-use super::hasty::Hasty;
-use super::{Engine, EngineError, Job, Precision, WINDOW, batch};
+use std::sync::Arc;
+
+use super::deciding::Hasty;
+use super::rounds;
 use crate::candidates::{LISTS_BUDGET, Lists};
+use crate::engine::{Engine, EngineError, Job, Precision, WINDOW};
 use crate::gpu::{AdapterSummary, DECIDE_WGSL, Deciding, Device, GpuError, GpuPass, HALVES, Tuning};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
@@ -13,19 +16,19 @@ use crate::trace::SettledTrace;
 ///
 /// A trace's record depends on the device and the scene, but not on the other traces nor on how many are on the device
 /// at a time.
-pub struct FastGpu<'m> {
-    lists: Lists<'m>,
+pub struct FastGpu {
+    lists: Lists,
     pass: GpuPass<Deciding>,
     window: usize,
 }
 
-impl<'m> FastGpu<'m> {
+impl FastGpu {
     /// An engine for `model` on an opened adapter.
     ///
     /// # Errors
     ///
     /// What the device complains of.
-    pub fn new(device: Device, model: &'m Model) -> Result<Self, GpuError> {
+    pub fn new(device: Device, model: Arc<Model>) -> Result<Self, GpuError> {
         let tuning = device.tuning();
         Self::with(device, model, tuning, DECIDE_WGSL)
     }
@@ -35,11 +38,11 @@ impl<'m> FastGpu<'m> {
     /// # Errors
     ///
     /// What the device complains of, be it the shader or the memory.
-    pub fn with(device: Device, model: &'m Model, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
+    pub fn with(device: Device, model: Arc<Model>, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
         // A list is made on first use, since no CPU answers in the device's place. `cover` is never called, so that a
         // record does not depend on how far the other traces of its batch go.
-        let lists = Lists::new(model).after(0);
         let n = model.vertices().len();
+        let lists = Lists::new(model).after(0);
         let pass = GpuPass::new(device, lists.keys(), n, LISTS_BUDGET, tuning, wgsl)?;
         Ok(FastGpu { lists, pass, window: WINDOW })
     }
@@ -66,7 +69,7 @@ impl<'m> FastGpu<'m> {
     }
 }
 
-impl Engine for FastGpu<'_> {
+impl Engine for FastGpu {
     fn name(&self) -> &'static str {
         "gpu"
     }
@@ -76,7 +79,7 @@ impl Engine for FastGpu<'_> {
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
-        batch::evaluate::<Hasty>(&mut self.pass, &self.lists, self.window, traces, job)
+        rounds::evaluate::<Hasty>(&mut self.pass, &self.lists, self.window, traces, job)
     }
 
     fn batch(&self) -> usize {

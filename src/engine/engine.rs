@@ -1,0 +1,72 @@
+//! What every engine does.
+
+use std::convert::Infallible;
+
+use super::{Job, Precision};
+use crate::gpu::GpuError;
+use crate::rope::TraceRecord;
+use crate::trace::SettledTrace;
+
+/// How many traces engines without a device can make use of at once: enough that all threads end at about the same time.
+const BATCH: usize = 8192;
+
+/// Turns batches of independent traces into records, for the model that the engine was made for.
+pub trait Engine: Send {
+    /// The engine's name, as the command line knows it.
+    fn name(&self) -> &'static str;
+
+    /// How much its ropes can be trusted; `None` if they are wrong by design, for comparison.
+    fn precision(&self) -> Option<Precision> {
+        Some(Precision::Certified)
+    }
+
+    /// Evaluates all `traces`, settled against the engine's model, and returns their records in the same order.
+    ///
+    /// Counts finished steps in `job` as it goes, and ends early when the job is stopped.
+    ///
+    /// # Errors
+    ///
+    /// [`EngineError::Stopped`] when the job was stopped, and whatever can go wrong with the engine's device.
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError>;
+
+    /// How many traces, at the most, it can make use of in one evaluation: with fewer it may be slower, with more it is no
+    /// faster.
+    fn batch(&self) -> usize {
+        BATCH
+    }
+
+    /// How many of the model's vertices it tries, that is, at how many a rope can turn within reach of the traces evaluated so
+    /// far; all with `keep_all`. `None` for engines that do not ask, or have not yet. See
+    /// [`Visibility::only_required`](crate::visibility::Visibility::only_required).
+    fn remaining(&self) -> Option<usize> {
+        None
+    }
+
+    /// Forgets what was made of the model on the way, so that the next evaluation makes it anew: for measurements.
+    fn forget(&mut self) {}
+}
+
+/// Why an engine gave no result.
+#[derive(Debug, thiserror::Error)]
+pub enum EngineError {
+    /// The job was stopped before it was done.
+    #[error("stopped before all traces were evaluated")]
+    Stopped,
+    /// The engine cannot take this scene.
+    #[error("the engine {engine} cannot take this scene: {why}")]
+    Unfit {
+        /// Which engine.
+        engine: &'static str,
+        /// What it cannot take.
+        why: String,
+    },
+    /// The GPU failed.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+impl From<Infallible> for EngineError {
+    fn from(never: Infallible) -> Self {
+        match never {}
+    }
+}
