@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::Frame;
 use super::places::{Places, VERTICES};
+use super::{Frame, Rank};
 use crate::scene::Model;
 
 /// How many vertices share a distance, that of the nearest: few, so that a query tries few too many; several, so that
@@ -99,14 +99,16 @@ impl List {
         self.places.iter().flat_map(|p| p.numbers).take(self.len)
     }
 
-    /// The number of the vertex at `place`.
-    pub fn number(&self, place: usize) -> Option<u32> {
+    /// The vertex of this rank.
+    #[inline]
+    pub fn vertex(&self, rank: Rank) -> Option<u32> {
+        let place = rank.0 as usize;
         (place < self.len).then(|| self.places[place / VERTICES].numbers[place % VERTICES])
     }
 
-    /// The place of the vertex with this number, if it is there. O(vertices).
-    pub fn place_of(&self, number: u32) -> Option<u32> {
-        self.numbers().zip(0..).find(|(v, _)| *v == number).map(|(_, place)| place)
+    /// The rank of a vertex, if it is there. O(vertices).
+    pub fn rank_of(&self, vertex: u32) -> Option<Rank> {
+        self.numbers().zip(0..).find(|(v, _)| *v == vertex).map(|(_, rank)| Rank(rank))
     }
 
     /// Their coordinates in the frame, one after the other.

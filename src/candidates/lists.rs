@@ -3,11 +3,11 @@
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
-use super::{Frame, List, Query, Simd};
+use super::{Frame, List, ListKey, Query, Simd};
 use glam::DVec2;
 
 use crate::geometry::{higher, lower};
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::visibility::{Scratch, Visibility};
 
 /// How much memory the lists may take unless told otherwise: 256 MiB, enough for some 200,000 pivots.
@@ -209,30 +209,31 @@ impl Lists {
         self.keep_all || self.visibility().is_none()
     }
 
-    /// A number for `list`, which is that of `pivot`: the pivot, or another for each of the lists for any pivot,
-    /// whosever it is.
-    pub fn key(&self, pivot: u32, list: &Arc<List>) -> u32 {
-        let keys = self.keys() as u32;
-        match list.is_of_any() {
-            false => pivot,
-            true if Arc::ptr_eq(list, self.all()) => keys - 1,
-            true => keys - 2,
-        }
+    /// The key of `list`, which is that of `pivot`: the pivots' own lists come first, then that of the
+    /// [`remaining`](Self::remaining) vertices and that of [`all`](Self::all).
+    pub fn key(&self, pivot: Pivot, list: &Arc<List>) -> ListKey {
+        let pivots = self.entries.len();
+        let key = match list.is_of_any() {
+            false => pivot.index(),
+            true if Arc::ptr_eq(list, self.all()) => pivots + 1,
+            true => pivots,
+        };
+        ListKey(key as u32)
     }
 
-    /// How many different [`key`](Self::key)s there are.
+    /// How many [`key`](Self::key)s there are: each is less than that.
     pub fn keys(&self) -> usize {
         self.entries.len() + 2
     }
 
-    /// The list of `pivot` (a vertex, or the number of vertices for the anchor), for queries whose points are all no
+    /// The list of `pivot`, for queries whose points are all no
     /// further from it than the square root of `squared`, in the scene's unit; infinity for any. `None` as long as that
     /// is not worth making: then [`look_into`](Self::look_into) answers.
     ///
     /// A pivot's first list goes a little further than its queries so far; the second goes all the way. See
     /// [`Visibility::look`] for what is in it and what making it costs.
-    pub fn of(&self, pivot: u32, squared: f64) -> Option<Arc<List>> {
-        let entry = &self.entries[pivot as usize];
+    pub fn of(&self, pivot: Pivot, squared: f64) -> Option<Arc<List>> {
+        let entry = &self.entries[pivot.index()];
         let list = entry.list.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(list) = list.as_ref().filter(|list| list.reaches(squared)) {
             // Written only if it changes, so that the threads need not take it from each other.
@@ -261,7 +262,7 @@ impl Lists {
     /// that is less.
     pub fn look_into(
         &self,
-        pivot: u32,
+        pivot: Pivot,
         query: &Query,
         simd: Simd,
         scratch: &mut Scratch,
@@ -294,13 +295,13 @@ impl Lists {
     }
 
     #[cold]
-    fn make(&self, pivot: u32, reach: f64) -> Arc<List> {
+    fn make(&self, pivot: Pivot, reach: f64) -> Arc<List> {
         let pool = || self.looks.lock().unwrap_or_else(PoisonError::into_inner);
         let (mut scratch, mut seen) = pool().pop().unwrap_or_default();
         let n = self.model.vertices().len();
         let visibility = self.visibility().expect("where there is none, all pivots have one list");
         let most = self.most.unwrap_or(TRIANGLES_A_LIST.max(n / 4));
-        let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
+        let at = self.model.position(pivot);
         let looked = if reach == f64::INFINITY {
             visibility.look_into(pivot, |_| 0, most, &mut scratch, &mut seen)
         } else {
@@ -311,7 +312,7 @@ impl Lists {
             None => Arc::clone(self.remaining()),
         };
         pool().push((scratch, seen));
-        let entry = &self.entries[pivot as usize];
+        let entry = &self.entries[pivot.index()];
         {
             // All of it under the lock, so that nobody drops a list whose bytes do not count yet.
             let mut slot = entry.list.write().unwrap_or_else(PoisonError::into_inner);

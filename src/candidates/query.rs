@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec2;
 
-use super::Frame;
+use super::{DevicePlace, Frame};
 
 /// By how much a swept triangle is grown, in the frame's unit: 2^-18, about 3.8e-6.
 ///
@@ -72,8 +72,8 @@ const FAR: f64 = 4.0;
 pub struct Query {
     /// The half-plane left of the triangle's right side.
     pub right: [f32; 3],
-    /// Where the vertices to be tried begin, in whatever holds them on the device.
-    pub first: u32,
+    /// Where the vertices to be tried begin.
+    pub first: DevicePlace,
     /// The half-plane right of its left side.
     pub left: [f32; 3],
     /// How many vertices are to be tried.

@@ -4,7 +4,7 @@
 use super::progress::Progress;
 use crate::candidates::{Frame, LEGS, Line, Query, ROOM, Simd, Slopes, Window, Wrapping};
 use crate::rope::TraceRecord;
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
 
 /// How many legs the first window of a trace covers at most, and the first after an event.
@@ -53,9 +53,9 @@ impl Windows {
         self.progress.at
     }
 
-    /// The rope's pivot: a vertex, or their number for the anchor.
-    pub(super) fn pivot(&self, model: &Model) -> u32 {
-        self.progress.rope.contacts().last().map_or(model.vertices().len() as u32, |c| c.vertex)
+    /// The rope's pivot.
+    pub(super) fn pivot(&self, model: &Model) -> Pivot {
+        model.pivot(self.progress.rope.contacts().last().map(|c| c.vertex))
     }
 
     /// The query for what comes next, of at most `most` legs; the trace is not done. Leaves the window's slopes in `slopes`.

@@ -9,7 +9,7 @@ mod decide;
 mod question;
 
 pub use decide::decide;
-pub use question::{Answer, NOTHING, Question, UNWRAP, rounded};
+pub use question::{Answer, NOBODY, NOTHING, Question, UNWRAP, rounded};
 
 /// The most legs that one question covers: its points are 8 bytes each, and the lane that answers it looks at them one
 /// by one.

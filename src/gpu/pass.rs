@@ -11,6 +11,7 @@ use super::buffers::{PATIENCE, binding, buffer};
 use super::kernel::{Kernel, Sweeping};
 use super::pages::{Pages, pages_of};
 use super::{Device, GpuError, Tuning};
+use crate::candidates::{DevicePlace, ListKey};
 
 /// How many tests a round has at most, one a vertex and point, if that leaves work for one workgroup: 2^32, some
 /// seconds on the slowest adapter known (0.7e9 tests a second), well within the patience of drivers that watch for
@@ -65,7 +66,7 @@ struct Sent {
 }
 
 impl<K: Kernel> GpuPass<K> {
-    /// A pass of the kernel with source `wgsl` for the lists of `pivots` pivots, of at most `largest` vertices each,
+    /// A pass of the kernel with source `wgsl` for `lists` lists, of at most `largest` vertices each,
     /// that keeps up to `budget` bytes of them on the device. A round takes `tuning.queries` queries, or fewer where
     /// the device's limits or the size of the lists ask for it.
     ///
@@ -74,7 +75,7 @@ impl<K: Kernel> GpuPass<K> {
     /// What the device complains of, be it the shader or the memory.
     pub fn new(
         opened: Device,
-        pivots: usize,
+        lists: usize,
         largest: usize,
         budget: usize,
         tuning: Tuning,
@@ -82,7 +83,7 @@ impl<K: Kernel> GpuPass<K> {
     ) -> Result<Self, GpuError> {
         let device = &opened.device;
         let limits = device.limits();
-        let pages = Pages::new(&opened, pivots, largest, budget);
+        let pages = Pages::new(&opened, lists, largest, budget);
         if pages.block_bytes() > limits.max_buffer_size {
             return Err(opened.unfit(format!("its buffers are too small for lists of {largest} vertices")));
         }
@@ -152,11 +153,16 @@ impl<K: Kernel> GpuPass<K> {
         self.pages.start_round();
     }
 
-    /// Where the list of `pivot`, of `len` vertices, lies on the device until the round is sent: the `first` of queries
-    /// that try it. If it is not there, it is brought, with the `coordinates` of its vertices. `None` if there is no
-    /// room beside the other lists of this round; the first list of a round always finds room.
-    pub fn place(&mut self, pivot: u32, len: usize, coordinates: impl FnOnce() -> Vec<[f32; 2]>) -> Option<u32> {
-        self.pages.place(&self.device, pivot, len, coordinates)
+    /// Where the list of this key, of `len` vertices, lies on the device until the round is sent: the `first` of
+    /// queries that try it. If it is not there, it is brought, with the `coordinates` of its vertices. `None` if there
+    /// is no room beside the other lists of this round; the first list of a round always finds room.
+    pub fn place(
+        &mut self,
+        key: ListKey,
+        len: usize,
+        coordinates: impl FnOnce() -> Vec<[f32; 2]>,
+    ) -> Option<DevicePlace> {
+        self.pages.place(&self.device, key, len, coordinates)
     }
 
     /// Sends a round of queries, sorted by `first`, whose lists were placed since the round was started, and the points
@@ -300,7 +306,7 @@ fn bytes_a_query<K: Kernel>() -> usize {
 
 /// The pages that queries sorted by `first` touch, in order, and for each which queries do. Of each query it is given
 /// where the vertices to be tried begin and how many they are.
-fn spans(queries: impl Iterator<Item = (u32, u32)>) -> Vec<(u32, Range<u32>)> {
+fn spans(queries: impl Iterator<Item = (DevicePlace, u32)>) -> Vec<(u32, Range<u32>)> {
     let mut spans: Vec<(u32, Range<u32>)> = Vec::new();
     // The pages of neighbours are the same or follow each other, since lists do not overlap.
     for (number, (first, count)) in (0..).zip(queries) {
@@ -333,6 +339,7 @@ mod tests {
             (3 * page, 2 * page + 6),
             (5 * page + 6, 8),
         ];
+        let queries = queries.map(|(first, count)| (DevicePlace(first), count));
         assert_eq!(spans(queries.into_iter()), [(0, 0..3), (2, 3..4), (3, 4..6), (4, 4..6), (5, 4..7)]);
     }
 }

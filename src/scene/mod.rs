@@ -18,6 +18,7 @@ mod object;
 mod options;
 mod outlines;
 mod pen;
+mod pivot;
 mod read;
 mod ros_map;
 mod sectors;
@@ -36,6 +37,7 @@ pub use movingai::GridMap;
 pub(crate) use object::MEMBER;
 pub use object::{Inside, Object, Wall};
 pub use options::{Ros, SceneOptions, Unknown};
+pub use pivot::Pivot;
 pub use read::{read_scene, read_scene_with};
 pub(crate) use sectors::{Sectors, by_angle};
 

@@ -4,9 +4,10 @@ use glam::DVec2;
 
 use rstar::{AABB, RTree, primitives::Rectangle};
 
-use super::mesh::{ABSENT, CLOSED, next};
+use super::mesh::{CLOSED, next};
 use super::{Scratch, Visibility};
 use crate::geometry::{higher, lower, orient};
+use crate::scene::Pivot;
 
 /// Which triangles can be reached from a point without crossing a wall, by their numbers.
 pub(crate) struct Reach {
@@ -21,13 +22,13 @@ impl Visibility {
     /// The triangles that can be reached from `pivot` without crossing a wall, in no particular order; none if it lies
     /// out of reach. Where walls cross at a point that no f64 names, some that cannot be reached may be among them.
     /// O(triangles).
-    pub(crate) fn reached(&self, pivot: u32) -> Vec<u32> {
+    pub(crate) fn reached(&self, pivot: Pivot) -> Vec<u32> {
         self.reached_through(pivot, |_| true)
     }
 
     /// The triangles that can be reached from `pivot` through those edges alone for whose numbers `is_passed` holds.
-    pub(super) fn reached_through(&self, pivot: u32, is_passed: impl Fn(u32) -> bool) -> Vec<u32> {
-        let Some(o) = self.mesh.pivot(pivot) else { return Vec::new() };
+    pub(super) fn reached_through(&self, pivot: Pivot, is_passed: impl Fn(u32) -> bool) -> Vec<u32> {
+        let Some(o) = self.mesh.vertex(pivot) else { return Vec::new() };
         self.flood(self.mesh.fan(o).iter().map(|edge| edge / 4).collect(), is_passed)
     }
 
@@ -82,7 +83,8 @@ impl Visibility {
     /// The triangles left and right of the wall from vertex `from` to vertex `to`; `None` if it is not one edge of the
     /// mesh, or not closed. O(triangles round `from`).
     pub(crate) fn beside(&self, from: u32, to: u32) -> Option<[u32; 2]> {
-        let (from, to) = (self.mesh.pivot(from)?, self.mesh.pivot(to)?);
+        let [from, to] = [from, to].map(|v| self.mesh.vertex(Pivot::at_vertex(v)));
+        let (from, to) = (from?, to?);
         let fan = self.mesh.fan(from).iter().copied();
         let left = fan.clone().find(|&edge| self.mesh.edge(next(edge)).origin == to)?;
         let right = fan.clone().find(|&edge| self.mesh.edge(next(next(edge))).origin == to)?;
@@ -90,8 +92,8 @@ impl Visibility {
     }
 
     /// The triangles that meet what is visible from `pivot`, each once, ascending; none if it lies out of reach.
-    pub(crate) fn seen(&self, pivot: u32) -> Vec<u32> {
-        let o = self.mesh.pivot(pivot);
+    pub(crate) fn seen(&self, pivot: Pivot) -> Vec<u32> {
+        let o = self.mesh.vertex(pivot);
         o.map_or(Vec::new(), |o| self.mesh.triangles_seen(o, &mut Scratch::default()))
     }
 
@@ -104,10 +106,7 @@ impl Visibility {
     /// corner and on no wall.
     pub(crate) fn look_from(&self, at: DVec2, triangle: u32, scratch: &mut Scratch, seen: &mut Vec<u32>) {
         seen.clear();
-        self.mesh.expand_from(at, triangle, scratch, seen);
-        seen.retain_mut(|v| {
-            let name = self.mesh.name(*v);
-            name != ABSENT && self.is_tangent(at, std::mem::replace(v, name))
-        });
+        let listed = self.mesh.expand_from(at, triangle, scratch);
+        self.name_tangent(at, scratch.seen(listed), seen);
     }
 }

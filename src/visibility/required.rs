@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Visibility;
-use super::mesh::{ABSENT, CLOSED, next};
+use super::mesh::{CLOSED, MeshVertex, next};
 use crate::geometry::{higher, lower, orient};
 
 impl Visibility {
@@ -28,7 +28,7 @@ impl Visibility {
             is_reached[triangle as usize] = true;
         }
         self.mesh.start_only_in(&is_reached);
-        for v in 0..self.mesh.len() as u32 {
+        for v in self.mesh.vertices() {
             let at = self.mesh.at(v);
             if !self.is_within_reach([at, at]) || !self.has_room(v) {
                 self.mesh.forget_name(v);
@@ -39,8 +39,7 @@ impl Visibility {
 
     /// The model's vertices that looks can list, ascending: those that are not left out. O(n log n).
     pub fn listed(&self) -> Vec<u32> {
-        let names = (0..self.mesh.len() as u32).map(|v| self.mesh.name(v));
-        let mut listed: Vec<u32> = names.filter(|&name| name != ABSENT).collect();
+        let mut listed: Vec<u32> = self.mesh.vertices().filter_map(|v| self.mesh.name(v)).collect();
         listed.sort_unstable();
         listed
     }
@@ -53,7 +52,7 @@ impl Visibility {
 
     /// Whether a sector at vertex `v` of the mesh, whose fan holds the triangles that are reached and no others, spans
     /// at least half a turn.
-    fn has_room(&self, v: u32) -> bool {
+    fn has_room(&self, v: MeshVertex) -> bool {
         let fan = self.mesh.fan(v);
         let begins_sector = |spoke: &&u32| self.mesh.edge(**spoke).twin == CLOSED;
         let is_wide = |&spoke: &u32| {
@@ -68,7 +67,7 @@ impl Visibility {
     }
 
     /// The far end of the wall that ends the sector begun by `spoke`, which is a wall.
-    fn end_of_sector(&self, mut spoke: u32) -> u32 {
+    fn end_of_sector(&self, mut spoke: u32) -> MeshVertex {
         loop {
             let last = self.mesh.edge(next(next(spoke)));
             if last.twin == CLOSED {

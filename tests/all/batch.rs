@@ -278,7 +278,10 @@ fn where_all_sees_all_everything_is_tried() {
     let traces = settled(&model, &(0..12).map(trace).collect::<Vec<_>>());
     agree(&model, &traces);
     let visible = Lists::new(model.clone()).after(0);
-    assert!(visible.of(9000, f64::INFINITY).is_some_and(|list| list.len() == 9000), "the anchor does not see too much");
+    assert!(
+        visible.of(model.pivot(None), f64::INFINITY).is_some_and(|list| list.len() == 9000),
+        "the anchor does not see too much"
+    );
 }
 
 /// Walls that lie on each other are cut by each other's ends into more pieces than are kept.

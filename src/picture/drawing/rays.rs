@@ -57,7 +57,7 @@ impl Canvas<'_> {
 fn seen(model: &Model, moment: &Moment) -> Vec<u32> {
     let all = model.vertices().len() as u32;
     let Some(visibility) = Visibility::new(model) else { return (0..all).collect() };
-    let pivot = moment.rope.contacts().last().map_or(all, |c| c.vertex);
+    let pivot = model.pivot(moment.rope.contacts().last().map(|c| c.vertex));
     let mut seen = Vec::new();
     visibility.look(pivot, &mut Scratch::default(), &mut seen);
     seen.sort_unstable();

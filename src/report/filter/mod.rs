@@ -88,7 +88,7 @@ fn of_walk(lists: &Lists, trace: &SettledTrace, record: &TraceRecord) -> Filter 
     let (model, points) = (lists.model(), trace.points());
     let mut pivots = Vec::with_capacity(points.len());
     replay(model.anchor(), model.vertices(), points.len(), &record.events, |_, rope| {
-        pivots.push(rope.contacts().last().map_or(model.vertices().len() as u32, |c| c.vertex));
+        pivots.push(model.pivot(rope.contacts().last().map(|c| c.vertex)));
     });
     let mut happens = vec![false; points.len()];
     record.events.iter().for_each(|event| happens[event.step as usize] = true);
@@ -96,7 +96,7 @@ fn of_walk(lists: &Lists, trace: &SettledTrace, record: &TraceRecord) -> Filter 
     while at + 1 < points.len() {
         let most = width.min(WINDOW).min(points.len() - 1 - at);
         let legs = (1..most).find(|leg| happens[at + leg]).unwrap_or(most);
-        let at_pivot = model.vertices().get(pivots[at] as usize).copied().unwrap_or(model.anchor());
+        let at_pivot = model.position(pivots[at]);
         let asked = &points[at..=at + legs];
         let (legs, query) = asked_of(lists, at_pivot, asked, &mut slopes);
         let list = lists.of(pivots[at], f64::INFINITY).expect("lists are made at once");

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{Filter, Truth, covers, holds};
-use crate::candidates::{Found, Frame, List, Query, ROOM, Simd, Slopes, Window};
+use crate::candidates::{DevicePlace, Found, Frame, List, ListKey, Query, ROOM, Rank, Simd, Slopes, Window};
 use crate::example::Draws;
 use crate::geometry::{check_point, opposite, orient, same_side};
 use crate::gpu::{GpuError, GpuPass};
@@ -90,9 +90,12 @@ impl Trial {
         }
         pass.forget();
         pass.start_round();
-        let first = pass.place(0, coordinates.len(), || coordinates).expect("the first list of a round finds room");
-        let parts = (first..).step_by(VERTICES);
-        let query = |(asked, first): (&Asked, u32)| Query { first, count: asked.list.len() as u32, ..asked.query };
+        let first = pass
+            .place(ListKey::default(), coordinates.len(), || coordinates)
+            .expect("the first list of a round finds room");
+        let parts = (0..).step_by(VERTICES).map(|rank| first.of(Rank(rank)));
+        let query =
+            |(asked, first): (&Asked, DevicePlace)| Query { first, count: asked.list.len() as u32, ..asked.query };
         let queries: Vec<Query> = self.asked.iter().zip(parts).map(query).collect();
         pass.send(0, &queries, &[]);
         let mut found = vec![Found::default(); queries.len()];
@@ -100,7 +103,7 @@ impl Trial {
         let mut filter = Filter::default();
         for ((Asked { truths, .. }, query), found) in self.asked.iter().zip(&queries).zip(&found) {
             let named = found.places().unwrap_or_default();
-            filter.count(truths.iter().copied().zip((query.first..).map(|place| named.contains(&place))));
+            filter.count(truths.iter().copied().zip((0..).map(|rank| named.contains(&query.first.of(Rank(rank))))));
         }
         Ok(filter)
     }
