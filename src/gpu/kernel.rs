@@ -5,11 +5,18 @@ use bytemuck::Pod;
 use crate::candidates::{DevicePlace, Found, Query};
 use crate::fast::{Answer, MOST_LEGS, Question};
 
+/// A shader of lists: what all of these share, and its own source.
+macro_rules! of_lists {
+    ($file:literal) => {
+        concat!(include_str!("../../shaders/shared/lists.wgsl"), include_str!($file))
+    };
+}
+
 /// The source of the candidate pass.
-pub const SWEEP_WGSL: &str = include_str!("../../shaders/sweep.wgsl");
+pub const SWEEP_WGSL: &str = of_lists!("../../shaders/sweep.wgsl");
 
 /// The source of the kernel that decides in f32.
-pub const DECIDE_WGSL: &str = include_str!("../../shaders/decide.wgsl");
+pub const DECIDE_WGSL: &str = of_lists!("../../shaders/decide.wgsl");
 
 /// A kernel: a shader, and what it is asked and answers.
 pub trait Kernel {

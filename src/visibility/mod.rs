@@ -80,8 +80,8 @@ impl Visibility {
     }
 
     /// Writes those of them that lie inside all lines of some kind into `seen`, each once, and returns how many
-    /// triangles were looked at; `None`, and nothing in `seen`, if it gave up because they were more than `most`, or the
-    /// pivot lies out of reach.
+    /// triangles were looked at; `None`, and nothing in `seen`, if it gave up because they were more than `most`, or
+    /// the pivot lies out of reach.
     ///
     /// `outside` has a bit for each line outside which a point lies; `pivot` must lie inside all. Looks no further than
     /// that: for pivots that are not worth a list. O(triangles of the mesh inside).

@@ -23,14 +23,14 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// All files in Rust under a folder.
+/// All files in Rust and all shaders under a folder.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).expect("a folder is read") {
         let path = entry.expect("an entry is read").path();
         if path.is_dir() {
             found.extend(sources(&path));
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
+        } else if path.extension().is_some_and(|extension| extension == "rs" || extension == "wgsl") {
             found.push(path);
         }
     }
@@ -96,11 +96,10 @@ fn rooms_import_only_from_rooms_before_them() {
 #[test]
 fn files_and_lines_are_short() {
     let mut faults = String::new();
-    let src = root().join("src");
-    for path in sources(&src) {
+    for path in [sources(&root().join("src")), sources(&root().join("shaders"))].concat() {
         let text = std::fs::read_to_string(&path).expect("a source file is read");
-        let path = path.strip_prefix(&src).expect("under src").display();
-        if !is_mended(&path.to_string()) {
+        let path = path.strip_prefix(root()).expect("under the root").display().to_string();
+        if !is_mended(path.trim_start_matches("src/")) {
             continue;
         }
         if text.lines().count() > LINES {
