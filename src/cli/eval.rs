@@ -22,8 +22,8 @@ use super::{print, print_json};
 pub(crate) struct Args {
     #[command(flatten)]
     input: InputArgs,
-    /// Queries of a path planner's benchmark in place of traces: a MovingAI .scen for a scene that is a .map. Each rope is tied
-    /// at a query's start; its free end goes straight to the goal, or along a shortest way from cell to cell
+    /// Queries of a path planner's benchmark in place of traces: a MovingAI .scen for a scene that is a .map. Each rope
+    /// is tied at a query's start; its free end goes straight to the goal, or along a shortest way from cell to cell
     #[arg(
         long, value_name = "FILE", requires = "scene",
         conflicts_with_all = [

@@ -87,7 +87,8 @@ mod tests {
     fn other_extensions_are_told_what_is_read() {
         for name in ["scene.txt", "scene"] {
             let e = read_scene(Path::new(name)).unwrap_err().to_string();
-            let rest = "the extension does not name a format; scenes are read from .geojson, .json, .wkt, .svg, .dxf, .map, .yaml, .yml";
+            let rest = "the extension does not name a format; scenes are read from .geojson, .json, .wkt, .svg, .dxf, \
+                .map, .yaml, .yml";
             assert_eq!(e, format!("{name}: {rest}"));
         }
     }

@@ -19,7 +19,7 @@
 //! let batches = Batches::start(Source::File(TraceReader::open(&traces)?), terms, 1024);
 //! let files = Files::new(Some(&out), None, &model, Vec::new());
 //! let mut contacts = 0;
-//! evaluate(batches, &mut Cpu::new(&model), files, OnViolation::Error, &Job::new(), |stage| {
+//! evaluate(batches, &mut Cpu::new(model.clone()), files, OnViolation::Error, &Job::new(), |stage| {
 //!     contacts += stage.records().iter().map(|record| record.wraps.len()).sum::<usize>();
 //! })?;
 //! assert_eq!(contacts, 1);

@@ -1,10 +1,12 @@
 //! Drawings as their own programs show them: files in which something was lost, bent or let through.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::DVec2;
-use tautline::scene::{Inside, Model, Scene, read_scene};
-use tautline::trace::{Trace, settle};
+use tautline::engine::{Engine, Job, Reference};
+use tautline::scene::{Inside, Model, Scene, SceneOptions, read_scene, read_scene_with};
+use tautline::trace::{Trace, ViolationKind, settle};
 
 fn read(name: &str) -> Result<Scene, String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/formats").join(name);
@@ -99,6 +101,56 @@ fn filled_boxes_and_wide_lines() {
     assert_eq!(solid, 3);
     let note = "walls are the middle of polylines, whose widest is 2 wide; polylines with a width: 1";
     assert!(says(&scene("wide.dxf"), note));
+}
+
+/// How long the rope is in the end.
+fn rope(scene: &Scene, anchor: [f64; 2], points: &[[f64; 2]]) -> f64 {
+    let model = Arc::new(Model::new(scene.clone(), Some(anchor.into())).unwrap());
+    let settled = settle(&model, &Trace { id: 0, points: points.iter().copied().map(DVec2::from).collect() });
+    assert_eq!(settled.violation(), None);
+    let records = Reference::new(model).evaluate(&[settled], &Job::new()).unwrap();
+    records[0].length
+}
+
+#[test]
+fn a_rope_goes_round_a_hatched_pillar() {
+    // ogr2ogr writes polygons as hatches; a pillar may be drawn as a line, too, before it is hatched.
+    for name in ["ogr2ogr.dxf", "hatch_min.dxf", "hatch_outlined.dxf"] {
+        let room = scene(name);
+        for (from, to) in [([1.0, 2.0], [4.0, 1.0]), ([4.0, 1.0], [1.0, 2.0])] {
+            assert_eq!(rope(&room, from, &[[1.0, 1.0], to]), 4.0, "{name}");
+        }
+        let model = Model::new(room, Some(DVec2::new(2.0, 2.0))).unwrap();
+        let settled = settle(&model, &Trace { id: 0, points: vec![DVec2::new(2.0, 1.5)] });
+        assert_eq!(settled.violation().map(|v| v.kind), Some(ViolationKind::EntersSolid), "{name}");
+    }
+    // The yard is a hole: a rope that is tied on its border goes on within it.
+    assert_eq!(rope(&scene("ogr2ogr.dxf"), [12.0, 2.0], &[[12.0, 8.0], [15.0, 8.0]]), 45f64.sqrt());
+}
+
+#[test]
+fn hatches_have_the_borders_that_another_reader_sees() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/formats/hatch.dxf");
+    let options = SceneOptions { flatten: Some(0.01), ..SceneOptions::default() };
+    let drawn = read_scene_with(&path, &options).unwrap();
+    assert!(says(&drawn, "passed over: 1 HATCH with a gradient, 1 HATCH with a pattern"), "{:?}", drawn.notes());
+    let of = |layer: &str| {
+        let lies = |&w: &usize| drawn.objects()[drawn.object_of(w)].layers == [layer];
+        (0..drawn.walls().len()).filter(lies).map(|w| drawn.ends(w)).collect::<Vec<_>>()
+    };
+    let far = |ones: &[[DVec2; 2]], others: &[[DVec2; 2]]| {
+        let to = |p: DVec2, [a, b]: [DVec2; 2]| {
+            p.distance(a + (b - a) * ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0))
+        };
+        let least = |p: DVec2| others.iter().map(|&wall| to(p, wall)).fold(f64::INFINITY, f64::min);
+        ones.iter().flat_map(|&[a, b]| [a, (a + b) / 2.0]).map(least).fold(0.0, f64::max)
+    };
+    for layer in ["bulged", "edges", "cw", "ellipse", "spline", "whole"] {
+        let [ours, theirs] = [of(layer), of(&format!("{layer} flattened"))];
+        // Ours lie within 0.01 of the curves, and theirs within 0.005.
+        let off = far(&ours, &theirs).max(far(&theirs, &ours));
+        assert!(!theirs.is_empty() && off < 0.0152, "{layer}: {off}");
+    }
 }
 
 #[test]

@@ -1,8 +1,11 @@
-//! Scenes as DXF drawings: lines, polylines, arcs, circles, ellipses and splines are walls, in blocks too.
+//! Scenes as DXF drawings: lines, polylines, arcs, circles, ellipses, splines and the borders of painted areas are
+//! walls, in blocks too.
 //!
 //! The file is read here: it is pairs of lines, and what is wrong in it, or no wall, is to be named with its line.
 
+mod block;
 mod entity;
+mod hatch;
 mod insert;
 mod shapes;
 mod spline;
@@ -16,9 +19,9 @@ use super::outlines::Outlines;
 use super::{Inside, Object, Scene, excerpt, listed, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
+use block::{Block, Clips};
 use entity::{Entities, Entity};
-use insert::{Block, Clips};
-use shapes::{Corner, point, polyline, upside, width};
+use shapes::{point, upside, width};
 
 /// How many entities and lines there may be beyond those that the file itself has room for: by INSERT.
 const USED_MAX: usize = 1 << 22;
@@ -28,8 +31,8 @@ const ANCHOR: &str = "anchor";
 
 /// Reads a drawing in ASCII DXF. Its coordinates are x and y of the model space; z is passed over.
 ///
-/// What lies on a layer that is off or frozen, what is invisible and what lies in the paper space is no wall; nor is what is
-/// inserted on a frozen layer, whatever layer it is on itself. Entities of other kinds are counted.
+/// What lies on a layer that is off or frozen, what is invisible and what lies in the paper space is no wall; nor is
+/// what is inserted on a frozen layer, whatever layer it is on itself. Entities of other kinds are counted.
 pub(super) fn parse(bytes: &[u8], flatten: Option<f64>) -> Result<Scene, Fault> {
     if bytes.starts_with(b"AutoCAD Binary DXF") {
         return Err(Fault::new(Place::default(), "binary DXF is not read; save the drawing as ASCII DXF"));
@@ -195,11 +198,18 @@ impl<'a> Reader<'a> {
             "POINT" if anchors => return self.mark(entity, &context),
             "POINT" => return Ok(()),
             "INSERT" => return self.insert(entity, &context),
+            "HATCH" => {
+                // Its paths take time where it is inserted again and again, even if nothing comes of them.
+                self.visited += entity.groups.len() / 4;
+                if let Some(other) = hatch::unpainted(entity)? {
+                    return self.pass_over(other);
+                }
+            }
             _ => {}
         }
         // These have coordinates of their own, seen along their normal.
         let mut transform = context.transform;
-        if matches!(entity.kind, "ARC" | "CIRCLE" | "LWPOLYLINE" | "POLYLINE" | "SOLID" | "TRACE")
+        if matches!(entity.kind, "ARC" | "CIRCLE" | "HATCH" | "LWPOLYLINE" | "POLYLINE" | "SOLID" | "TRACE")
             && upside(entity)? < 0.0
         {
             transform *= MIRRORED;
@@ -207,21 +217,14 @@ impl<'a> Reader<'a> {
         // Names take room too where something is inserted again and again.
         self.visited += (layer.len() + context.label.map_or(0, str::len)) / 16;
         // The format does not say whether a closed line is the border of something solid; these are painted areas.
-        let inside = if matches!(entity.kind, "SOLID" | "TRACE") { Inside::EvenOdd } else { Inside::Free };
+        let painted = matches!(entity.kind, "HATCH" | "SOLID" | "TRACE");
+        let inside = if painted { Inside::EvenOdd } else { Inside::Free };
         let label = context.label.map(short);
         self.outlines.begin(Object { label, layers: vec![short(layer)], inside });
         let from = self.outlines.len();
-        let pen = &mut self.outlines.pen(transform);
-        let drawn = if entity.kind == "POLYLINE" {
-            let (corners, closed) = corners(entity)?;
-            polyline(entity, &corners, closed, pen).map(|()| true)
-        } else {
-            shapes::draw(entity, pen)
-        };
-        if !drawn? {
+        if let Some(other) = shapes::draw(entity, &mut self.outlines.pen(transform))? {
             self.outlines.take_back();
-            *self.passed.entry(entity.kind).or_default() += 1;
-            return Ok(());
+            return self.pass_over(other);
         }
         if anchors {
             return Err(entity.fault(format_args!("lies on the layer {layer}, which is for one POINT, the anchor")));
@@ -234,6 +237,12 @@ impl<'a> Reader<'a> {
         if width > 0.0 {
             self.wide = (self.wide.0 + 1, self.wide.1.max(width));
         }
+        Ok(())
+    }
+
+    /// Counts what is of a kind that is not read.
+    fn pass_over(&mut self, name: &'a str) -> Result<(), Fault> {
+        *self.passed.entry(name).or_default() += 1;
         Ok(())
     }
 
@@ -252,22 +261,6 @@ impl<'a> Reader<'a> {
 
 /// From the coordinates of what is seen from below to those of the drawing.
 const MIRRORED: DAffine2 = DAffine2::from_cols(DVec2::NEG_X, DVec2::Y, DVec2::ZERO);
-
-/// The corners of a POLYLINE, and whether it is closed.
-fn corners(entity: &Entity<'_>) -> Result<(Vec<Corner>, bool), Fault> {
-    let flags = entity.flags(70)?;
-    if flags & (16 | 64) != 0 {
-        return Err(entity.fault("is a mesh in space; explode it into lines"));
-    }
-    let mut corners = Vec::new();
-    for vertex in &entity.parts {
-        // Control points of a fitted curve; the curve's own points follow.
-        if vertex.kind == "VERTEX" && vertex.flags(70)? & 16 == 0 {
-            corners.push((point(vertex, 10)?, vertex.or(42, 0.0)?));
-        }
-    }
-    Ok((corners, flags & 1 == 1))
-}
 
 /// The start of a name, as it is kept.
 fn short(name: &str) -> String {
@@ -300,5 +293,7 @@ fn unit_name(code: &str) -> Option<&'static str> {
     NAMES.get(code.parse::<usize>().ok()?.checked_sub(1)?).copied()
 }
 
+#[cfg(test)]
+mod hatch_tests;
 #[cfg(test)]
 mod tests;

@@ -5,26 +5,28 @@ use glam::DVec2;
 use super::super::curves::Ellipse;
 use super::super::pen::{Drawn, Pen};
 use super::entity::Entity;
+use super::hatch;
 use super::spline::beziers;
 use crate::read_error::Fault;
 
 /// A bulge below this is none: the arc lies nearer to its chord than this part of the chord's length.
-const BULGE_MIN: f64 = 1e-9;
+pub(super) const BULGE_MIN: f64 = 1e-9;
 
-/// Draws an entity that stands alone, and says whether it is of a kind that is drawn. Of what has no extent it draws nothing.
-pub(super) fn draw(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<bool, Fault> {
+/// Draws an entity, or says under which name it is passed over if it is of a kind that is not drawn. Of what has no
+/// extent it draws nothing.
+pub(super) fn draw<'a>(entity: &Entity<'a>, pen: &mut Pen<'_>) -> Result<Option<&'a str>, Fault> {
     let drawn = match entity.kind {
         "LINE" => {
             let [from, to] = [point(entity, 10)?, point(entity, 11)?];
             pen.polyline(&[from, to], false)
         }
         "CIRCLE" => {
-            let Some(radius) = radius(entity)? else { return Ok(true) };
+            let Some(radius) = radius(entity)? else { return Ok(None) };
             pen.ellipse(point(entity, 10)?, DVec2::new(radius, 0.0), DVec2::new(0.0, radius))
         }
         "ARC" => {
             let [from, to] = [entity.number(50)?, entity.number(51)?];
-            let Some(radius) = radius(entity)? else { return Ok(true) };
+            let Some(radius) = radius(entity)? else { return Ok(None) };
             let [a, b] = [DVec2::new(radius, 0.0), DVec2::new(0.0, radius)];
             arc(pen, Ellipse { centre: point(entity, 10)?, a, b, from, sweep: turn(from, to) })
         }
@@ -32,14 +34,18 @@ pub(super) fn draw(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<bool, Fault
             let a = point(entity, 11)?;
             let b = a.perp() * entity.number(40)? * upside(entity)?;
             if b == DVec2::ZERO {
-                return Ok(true);
+                return Ok(None);
             }
             let [from, to] = [entity.or(41, 0.0)?, entity.or(42, std::f64::consts::TAU)?].map(f64::to_degrees);
             arc(pen, Ellipse { centre: point(entity, 10)?, a, b, from, sweep: turn(from, to) })
         }
         "LWPOLYLINE" => {
             let corners = corners(entity)?;
-            return polyline(entity, &corners, entity.flags(70)? & 1 == 1, pen).map(|()| true);
+            return polyline(entity, &corners, entity.flags(70)? & 1 == 1, pen).map(|()| None);
+        }
+        "POLYLINE" => {
+            let (corners, closed) = vertices(entity)?;
+            return polyline(entity, &corners, closed, pen).map(|()| None);
         }
         "SOLID" | "TRACE" => {
             // Its corners are told along two opposite sides, both in the same direction.
@@ -47,11 +53,12 @@ pub(super) fn draw(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<bool, Fault
             pen.polyline(&if c == d { vec![a, b, c] } else { vec![a, b, d, c] }, true)
         }
         "3DFACE" => face(entity, pen)?,
-        "SPLINE" => return spline(entity, pen).map(|()| true),
-        _ => return Ok(false),
+        "SPLINE" => return spline(entity, pen).map(|()| None),
+        "HATCH" => return hatch::draw(entity, pen),
+        kind => return Ok(Some(kind)),
     };
     drawn.map_err(|fault| entity.fault(fault))?;
-    Ok(true)
+    Ok(None)
 }
 
 /// The point whose x has this group code; its y has the code 10 higher.
@@ -75,7 +82,7 @@ pub(super) fn upside(entity: &Entity<'_>) -> Result<f64, Fault> {
 }
 
 /// The radius; `None` if it is 0.
-fn radius(entity: &Entity<'_>) -> Result<Option<f64>, Fault> {
+pub(super) fn radius(entity: &Entity<'_>) -> Result<Option<f64>, Fault> {
     match entity.number(40)? {
         0.0 => Ok(None),
         radius if radius > 0.0 => Ok(Some(radius)),
@@ -121,7 +128,7 @@ pub(super) fn width(entity: &Entity<'_>) -> Result<f64, Fault> {
 }
 
 /// How far it is from one angle on to another, in degrees above 0 up to a whole turn.
-fn turn(from: f64, to: f64) -> f64 {
+pub(super) fn turn(from: f64, to: f64) -> f64 {
     let turn = (to - from) % 360.0;
     let turn = if turn <= 0.0 { turn + 360.0 } else { turn };
     // Angles in radians seldom make a whole turn to the last bit.
@@ -138,8 +145,8 @@ fn arc(pen: &mut Pen<'_>, arc: Ellipse) -> Drawn {
 /// A corner of a polyline and the bulge of the side behind it: the tangent of a quarter of its arc's angle.
 pub(super) type Corner = (DVec2, f64);
 
-/// The corners of a LWPOLYLINE: each begins with its x.
-fn corners(entity: &Entity<'_>) -> Result<Vec<Corner>, Fault> {
+/// The corners of a LWPOLYLINE or of a HATCH's path: each begins with its x.
+pub(super) fn corners(entity: &Entity<'_>) -> Result<Vec<Corner>, Fault> {
     let mut corners: Vec<Corner> = Vec::new();
     for &(code, value) in &entity.groups {
         let number = || entity.parse(code, value);
@@ -154,6 +161,22 @@ fn corners(entity: &Entity<'_>) -> Result<Vec<Corner>, Fault> {
         return Err(entity.fault(format_args!("corner {i} has an x but no y")));
     }
     Ok(corners)
+}
+
+/// The corners of a POLYLINE, and whether it is closed.
+fn vertices(entity: &Entity<'_>) -> Result<(Vec<Corner>, bool), Fault> {
+    let flags = entity.flags(70)?;
+    if flags & (16 | 64) != 0 {
+        return Err(entity.fault("is a mesh in space; explode it into lines"));
+    }
+    let mut corners = Vec::new();
+    for vertex in &entity.parts {
+        // Control points of a fitted curve; the curve's own points follow.
+        if vertex.kind == "VERTEX" && vertex.flags(70)? & 16 == 0 {
+            corners.push((point(vertex, 10)?, vertex.or(42, 0.0)?));
+        }
+    }
+    Ok((corners, flags & 1 == 1))
 }
 
 pub(super) fn polyline(entity: &Entity<'_>, corners: &[Corner], closed: bool, pen: &mut Pen<'_>) -> Result<(), Fault> {
@@ -178,28 +201,36 @@ fn bulged(from: DVec2, to: DVec2, bulge: f64) -> Ellipse {
 }
 
 fn spline(entity: &Entity<'_>, pen: &mut Pen<'_>) -> Result<(), Fault> {
-    let weights = entity.numbers(41)?;
-    if weights.windows(2).any(|w| w[0] != w[1]) {
+    if is_rational(entity, 41)? {
         return Err(entity.fault("has weights that differ (a rational spline); make a polyline of it"));
     }
-    let [x, y] = [entity.numbers(10)?, entity.numbers(20)?];
-    if x.is_empty() {
+    if entity.text(10).is_none() {
         return Err(entity.fault("has no control points; make a polyline of it"));
     }
-    if x.len() != y.len() {
-        return Err(entity.fault(format_args!("{} x and {} y of control points", x.len(), y.len())));
-    }
-    let points: Vec<DVec2> = x.into_iter().zip(y).map(DVec2::from).collect();
-    let degree = usize::try_from(entity.flags(71)?).unwrap_or(0);
-    let curves = beziers(degree, &entity.numbers(40)?, &points).map_err(|what| entity.fault(what))?;
-    for (i, curve) in curves.iter().enumerate() {
-        let drawn = if i == 0 { pen.start(curve[0]) } else { Ok(()) };
-        let drawn = drawn.and_then(|()| pen.bezier_to(&curve[1..degree], curve[degree]));
-        drawn.map_err(|fault| entity.fault(fault))?;
+    for (i, curve) in curves(entity, 71)?.iter().enumerate() {
+        let [first, inner @ .., last] = &curve[..] else { continue };
+        let drawn = if i == 0 { pen.start(*first) } else { Ok(()) };
+        drawn.and_then(|()| pen.bezier_to(inner, *last)).map_err(|fault| entity.fault(fault))?;
     }
     // A closed spline's last point is its first one, but for rounding.
     if entity.flags(70)? & 1 == 1 {
         pen.close();
     }
     Ok(())
+}
+
+/// Whether a spline, whose weights have this group code, has some that differ.
+pub(super) fn is_rational(entity: &Entity<'_>, weights: i32) -> Result<bool, Fault> {
+    Ok(entity.numbers(weights)?.windows(2).any(|w| w[0] != w[1]))
+}
+
+/// The Bezier curves of a spline whose degree has this group code.
+pub(super) fn curves(entity: &Entity<'_>, degree: i32) -> Result<Vec<Vec<DVec2>>, Fault> {
+    let [x, y] = [entity.numbers(10)?, entity.numbers(20)?];
+    if x.len() != y.len() {
+        return Err(entity.fault(format_args!("{} x and {} y of control points", x.len(), y.len())));
+    }
+    let points: Vec<DVec2> = x.into_iter().zip(y).map(DVec2::from).collect();
+    let degree = usize::try_from(entity.flags(degree)?).unwrap_or(0);
+    beziers(degree, &entity.numbers(40)?, &points).map_err(|what| entity.fault(what))
 }

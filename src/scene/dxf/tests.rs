@@ -3,7 +3,7 @@
 use super::*;
 
 /// Entities as words: `LINE 10=1 20=2`. Blocks come first, as `name: entities`.
-fn file(before: &str, blocks: &[(&str, &str)], entities: &str) -> String {
+pub(super) fn file(before: &str, blocks: &[(&str, &str)], entities: &str) -> String {
     let groups = |words: &str| {
         let pairs = words.split_whitespace().map(|word| match word.split_once('=') {
             Some((code, value)) => format!("{code}\n{value}\n"),
@@ -17,22 +17,22 @@ fn file(before: &str, blocks: &[(&str, &str)], entities: &str) -> String {
     format!("{}{all}0\nEOF\n", groups(before))
 }
 
-fn parsed(text: &str) -> Result<Scene, String> {
+pub(super) fn parsed(text: &str) -> Result<Scene, String> {
     parse(text.as_bytes(), Some(0.01)).map_err(|fault| format!("{}: {}", fault.place, fault.what))
 }
 
-fn walls_of(scene: &Scene) -> Vec<[f64; 4]> {
+pub(super) fn walls_of(scene: &Scene) -> Vec<[f64; 4]> {
     (0..scene.walls().len()).map(|w| scene.ends(w)).map(|[a, b]| [a.x, a.y, b.x, b.y]).collect()
 }
 
-fn walls(blocks: &[(&str, &str)], entities: &str) -> Vec<[f64; 4]> {
+pub(super) fn walls(blocks: &[(&str, &str)], entities: &str) -> Vec<[f64; 4]> {
     walls_of(&parsed(&file("", blocks, entities)).unwrap_or_else(|what| panic!("{entities}: {what}")))
 }
 
 const LINE: &str = "LINE 10=1 20=2 11=3 21=5";
 
 /// That all walls' ends lie on a circle, and where the first and the last one end.
-fn on_circle(walls: &[[f64; 4]], centre: [f64; 2], radius: f64) -> [[f64; 2]; 2] {
+pub(super) fn on_circle(walls: &[[f64; 4]], centre: [f64; 2], radius: f64) -> [[f64; 2]; 2] {
     for w in walls {
         for [x, y] in [[w[0], w[1]], [w[2], w[3]]] {
             let off = (x - centre[0]).hypot(y - centre[1]) - radius;
@@ -122,7 +122,7 @@ fn hidden_things_are_no_walls_and_others_are_counted() {
     let notes = [
         "the drawing does not say what a unit is (no $INSUNITS)",
         "hidden entities, which are no walls: 4",
-        "passed over: 1 HATCH, 2 TEXT",
+        "passed over: 1 HATCH with a pattern, 2 TEXT",
     ];
     assert_eq!(scene.notes(), notes);
 }
