@@ -43,7 +43,7 @@ fn cpu(bencher: Bencher<'_, '_>) {
     let (list, simd, mut found) = (lists.all(), Simd::detected(), Vec::new());
     bencher.counter(ItemsCount::new(queries.len())).bench_local(|| {
         found.clear();
-        queries.iter().for_each(|query| list.sweep(simd, query, list.len(), &mut found));
+        queries.iter().for_each(|query| simd.sweep(list, query, list.len(), &mut found));
         found.len()
     });
 }
@@ -60,7 +60,7 @@ fn gpu_round(bencher: Bencher<'_, '_>) {
     let mut found = vec![Found::default(); queries.len()];
     bencher.counter(ItemsCount::new(queries.len())).bench_local(|| {
         pass.start_round();
-        let first = pass.place(lists.key(0, list), list.len(), || list.coordinates().collect());
+        let first = pass.place(lists.key(MODEL.pivot(None), list), list.len(), || list.coordinates().collect());
         let first = first.expect("the first list of a round finds room");
         queries.iter_mut().for_each(|query| (query.first, query.count) = (first, n as u32));
         pass.send(0, &queries, &[]);

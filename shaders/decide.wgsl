@@ -1,14 +1,13 @@
 // Deciding in f32: which event does the rope's last leg meet first?
 //
-// One lane takes one question: a window of legs about one pivot. It looks through the vertices of the pivot's list, which
-// lie in pages as for `sweep.wgsl`, for those in the wedge that the legs span. These it tries leg by leg, by the rules of the
-// exact update (`src/rope/update.rs`) with rounded cross products in the place of exact signs. Nobody confirms its answer.
+// One lane takes one question: a window of legs about one pivot. It looks through the vertices of the pivot's list for
+// those in the wedge that the legs span. These it tries leg by leg, by the rules of the exact update
+// (`src/rope/update.rs`) with rounded cross products in the place of exact signs. Nobody confirms its answer.
 //
-// The twin on the CPU is `src/fast/decide.rs`. All is compared as cross products, so nothing is divided; coordinates are
-// bounded, so nothing is infinite.
-
-// How many vertices a page holds, two to a vec4.
-const PAGE: u32 = 8190u;
+// The twin on the CPU is `src/fast/decide.rs`. All is compared as cross products, so nothing is divided; coordinates
+// are bounded, so nothing is infinite.
+//
+// `shared/lists.wgsl` stands before this.
 
 // The leg of no event, and the place of the pivot's unwrap.
 const NOTHING: u32 = 0xffffffffu;
@@ -48,33 +47,12 @@ struct Answer {
     at: vec2<f32>,
 }
 
-struct Page {
-    // The place of its first vertex; even.
-    first: u32,
-    unused_x: u32,
-    unused_y: u32,
-    unused_z: u32,
-    pairs: array<vec4<f32>, 4095>,
-}
-
-// The questions that this dispatch answers: those whose lists lie in the page.
-struct Span {
-    first: u32,
-    end: u32,
-    unused_x: u32,
-    unused_y: u32,
-}
-
-@group(0) @binding(0) var<uniform> span: Span;
 @group(0) @binding(1) var<storage, read> questions: array<Question>;
 @group(0) @binding(2) var<storage, read_write> answers: array<Answer>;
 @group(0) @binding(3) var<storage, read> points: array<vec2<f32>>;
-@group(1) @binding(0) var<uniform> page: Page;
 
-override WORKGROUP: u32 = 64u;
-
-// How many vertices a lane keeps before it tries them. Lanes that try what they keep at the same time wait less for each
-// other, and each point is read once for all of them.
+// How many vertices a lane keeps before it tries them. Lanes that try what they keep at the same time wait less for
+// each other, and each point is read once for all of them.
 const KEPT: u32 = 8u;
 
 var<private> kept: array<vec2<f32>, KEPT>;
@@ -140,8 +118,8 @@ fn is_pivot_in_wedge(question: Question) -> bool {
     return question.back != 0.0 && sides >= -MARGIN;
 }
 
-// The first event of the first `count` of the vertices kept and, if asked for, of the pivot, if it comes before `met`: else
-// that.
+// The first event of the first `count` of the vertices kept and, if asked for, of the pivot, if it comes before `met`:
+// else that.
 fn try_legs(question: Question, count: u32, with_pivot: bool, met_before: Answer) -> Answer {
     var met = met_before;
     if count == 0u && !with_pivot {

@@ -1,8 +1,9 @@
-// What a device makes of f32: sums and products, alone and put together in every shape in which the kernels put them together.
+// What a device makes of f32: sums and products, alone and put together in every shape in which the kernels put them
+// together.
 //
-// One lane takes one sample, and for each shape a sample of its own, so that nothing is computed for two of them at once.
-// `src/gpu/arithmetic.rs` compares the results with exact ones. `src/gpu/shapes` names the shapes in the order in which they
-// come here, and holds them against the kernels' source.
+// One lane takes one sample, and for each shape a sample of its own, so that nothing is computed for two of them at
+// once. `src/gpu/arithmetic.rs` compares the results with exact ones. `src/gpu/shapes` names the shapes in the order in
+// which they come here, and holds them against the kernels' source.
 
 struct Sample {
     // The normal of a half-plane, and its offset.

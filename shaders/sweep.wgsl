@@ -1,14 +1,12 @@
 // The candidate pass: which vertices can the rope's last leg meet while it sweeps a triangle?
 //
-// One lane takes one query and tries the vertices of its pivot's list. Lists lie in pages, each a uniform buffer; queries
-// come sorted by list, so that neighbouring lanes read the same vertices at the same time. The test is conservative: it may
-// name a vertex too many, never one too few (the margin is in the query; `src/candidates/query.rs` derives it). The CPU
-// decides exactly.
+// One lane takes one query and tries the vertices of its pivot's list. The test is conservative: it may name a vertex
+// too many, never one too few (the margin is in the query; `src/candidates/query.rs` derives it). The CPU decides
+// exactly.
 //
-// The twin on the CPU is `src/candidates/list.rs`.
-
-// How many vertices a page holds, two to a vec4.
-const PAGE: u32 = 8190u;
+// The twin on the CPU is `Simd::sweep` in `src/candidates/simd.rs`.
+//
+// `shared/lists.wgsl` stands before this.
 
 // A swept triangle, as three half-planes in the frame's unit (xy: the normal, pointing inwards; z: the offset): p is
 // inside where dot(normal, p) + offset >= 0. And the places, counted over all pages, of the vertices to be tried.
@@ -27,29 +25,8 @@ struct Found {
     places: array<u32, 15>,
 }
 
-struct Page {
-    // The place of its first vertex; even.
-    first: u32,
-    unused_x: u32,
-    unused_y: u32,
-    unused_z: u32,
-    pairs: array<vec4<f32>, 4095>,
-}
-
-// The queries that this dispatch answers: those whose lists lie in the page.
-struct Span {
-    first: u32,
-    end: u32,
-    unused_x: u32,
-    unused_y: u32,
-}
-
-@group(0) @binding(0) var<uniform> span: Span;
 @group(0) @binding(1) var<storage, read> queries: array<Query>;
 @group(0) @binding(2) var<storage, read_write> found: array<Found>;
-@group(1) @binding(0) var<uniform> page: Page;
-
-override WORKGROUP: u32 = 64u;
 
 fn inside(query: Query, p: vec2<f32>) -> bool {
     let right = query.right.x * p.x + query.right.y * p.y + query.right.z;
@@ -76,8 +53,8 @@ fn sweep(@builtin(global_invocation_id) id: vec3<u32>) {
     if query.first < page.first {
         count = found[lane].count;
     }
-    // Lists begin at even places, and so do pages. A query that tries less of its list than its neighbours do may have ended
-    // before this page.
+    // Lists begin at even places, and so do pages. A query that tries less of its list than its neighbours do may have
+    // ended before this page.
     let end = min(query.first + query.count, page.first + PAGE);
     for (var place = max(query.first, page.first); place < end; place += 2u) {
         let pair = page.pairs[(place - page.first) / 2u];

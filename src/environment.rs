@@ -17,8 +17,8 @@ pub struct Environment {
     pub threads: usize,
     /// The version of this crate.
     pub version: &'static str,
-    /// The commit that it was built from, with `-changed` if the files were not those of the commit; `unknown` where there
-    /// was no repository.
+    /// The commit that it was built from, with `-changed` if the files were not those of the commit; `unknown` where
+    /// there was no repository.
     pub commit: &'static str,
 }
 

@@ -1,18 +1,20 @@
 //! Text from outside as people get to see it: without characters that a terminal obeys.
 //!
-//! A layer's name, a string in JSON or the name of a file may hold escape sequences, which change colours, move the cursor
-//! over what was printed before or type into the terminal. All that is printed goes through here.
+//! A layer's name, a string in JSON or the name of a file may hold escape sequences, which change colours, move the
+//! cursor over what was printed before or type into the terminal. All that is printed goes through here.
 
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Whether a terminal obeys `c` instead of showing it: control characters, and those that turn the direction of writing.
+/// Whether a terminal obeys `c` instead of showing it: control characters, and those that turn the direction of
+/// writing.
 fn is_obeyed(c: char) -> bool {
     let turns = matches!(c, '\u{61c}' | '\u{200e}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || turns
 }
 
-/// `text` with every character that a terminal obeys written as `\u{1b}`, line ends as `\n`. O(length); most text is not copied.
+/// `text` with every character that a terminal obeys written as `\u{1b}`, line ends as `\n`. O(length); most text is
+/// not copied.
 ///
 /// ```
 /// use tautline::escape::escaped;

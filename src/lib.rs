@@ -1,14 +1,22 @@
 //! Taut ropes of dragged traces among walls, in bulk and exactly.
 //!
-//! A rope is tied to a fixed anchor and held at its free end. The free end is dragged along a trace through a plane full
-//! of walls. After every step the taut rope is the list of wall ends that it bends round. `tautline` keeps that list for
-//! thousands to millions of independent traces at once: a compute shader finds the few wall ends that a trace can meet,
-//! and the CPU decides exactly what happens.
+//! A rope is tied to a fixed anchor and held at its free end. The free end is dragged along a trace through a plane
+//! full of walls. After every step the taut rope is the list of wall ends that it bends round. `tautline` keeps that
+//! list for thousands to millions of independent traces at once: a compute shader finds the few wall ends that a trace
+//! can meet, and the CPU decides exactly what happens.
 //!
-//! Data flows one way: a [`scene`] and its anchor make a [`Model`](scene::Model); a [`trace`] is checked against the model
-//! and settled; an [`engine`] turns settled traces into [`TraceRecord`](rope::TraceRecord)s; [`output`] writes them. [`report`]
-//! measures engines against each other; [`simplify`] leaves wall ends out of a scene for speed; a [`study`] draws very many
-//! traces and says what their ropes are like; a [`picture`] shows them.
+//! Data flows one way: a [`scene`] and its anchor make a [`Model`](scene::Model); a [`trace`] is checked against the
+//! model and settled; an [`engine`] turns settled traces into [`TraceRecord`](rope::TraceRecord)s; [`output`] writes
+//! them.
+//!
+//! Engines share the exact update of the [`rope`], which rests on the signs of [`geometry`]. They differ in how they
+//! find the wall ends to try: [`visibility`] says which a rope can turn at next, [`candidates`] which of these a few
+//! steps can meet, [`gpu`] asks the same of a device, and [`fast`] has it decide in f32 as well.
+//!
+//! Around them: [`example`] has scenes and traces without files, and [`queries`] those of path planners' benchmarks;
+//! [`simplify`] leaves wall ends out of a scene for speed; a [`study`] draws very many traces and says what their ropes
+//! are like; [`report`] measures engines against each other; a [`picture`] shows ropes and studies; [`escape`] makes
+//! text from files fit for terminals.
 //!
 //! ```
 //! use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! Numbers as text.
 //!
-//! What is read must be what was meant: the parsers of the formats round `1e-400` to 0 in silence, and one of them drops
-//! a plus in front of a second one.
+//! What is read must be what was meant: the parsers of the formats round `1e-400` to 0 in silence, and one of them
+//! drops a plus in front of a second one.
 
 use std::ops::Range;
 
@@ -17,15 +17,15 @@ pub(crate) enum NumberFault {
 /// How small numbers are named that vanish.
 pub(crate) const VANISHES: &str = "too small for a number of 64 bits, and not 0; write 0 if that is meant";
 
-/// The number that `text` is: digits with an optional sign, point and exponent. Infinities and NaN, which have names, are
-/// read too; whether they are allowed the caller knows.
+/// The number that `text` is: digits with an optional sign, point and exponent. Infinities and NaN, which have names,
+/// are read too; whether they are allowed the caller knows.
 pub(crate) fn parse(text: &str) -> Result<f64, NumberFault> {
     let number: f64 = text.parse().map_err(|_| NumberFault::NoNumber)?;
     if number.abs() < f64::MIN_POSITIVE && vanishes(text, number) { Err(NumberFault::Vanishes) } else { Ok(number) }
 }
 
-/// The number that `text` is, as on a command line: with white space around it, but nothing else. `None` too for a number that
-/// is not 0 and so small that f64 cannot hold it with all its digits.
+/// The number that `text` is, as on a command line: with white space around it, but nothing else. `None` too for a
+/// number that is not 0 and so small that f64 cannot hold it with all its digits.
 ///
 /// ```
 /// use tautline::parse_number;

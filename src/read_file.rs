@@ -28,7 +28,8 @@ pub(crate) fn special(metadata: &Metadata) -> Option<&'static str> {
     (!metadata.is_file() && !metadata.is_dir()).then_some("a device")
 }
 
-/// Opens a regular file, or with `pipes` a pipe too. Anything else may never end, or not even open, and is refused first.
+/// Opens a regular file, or with `pipes` a pipe too. Anything else may never end, or not even open, and is refused
+/// first.
 pub(crate) fn open(path: &Path, pipes: bool) -> Result<File, ReadError> {
     let io = |cause| ReadError::io(path, cause);
     let metadata = std::fs::metadata(path).map_err(io)?;

@@ -13,8 +13,8 @@ use crate::trace::{SettledTrace, Trace, settle_owned};
 /// What accuracy is given for speed. The default gives none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Trade {
-    /// Of so many points of a trace one is used, where no wall is in the way of the longer step: at least 1, which uses all. See
-    /// [`SettledTrace::coarsened`].
+    /// Of so many points of a trace one is used, where no wall is in the way of the longer step: at least 1, which uses
+    /// all. See [`SettledTrace::coarsened`].
     pub stride: u32,
     /// By how much walls may move for there to be fewer wall ends, in the scene's unit. See [`simplify`].
     pub simplify: Option<f64>,

@@ -20,8 +20,8 @@ impl Frame {
         // Halved first: the sum and the difference of the largest coordinates stay finite.
         let centre = low / 2.0 + high / 2.0;
         let half = (high - centre).abs().max((low - centre).abs()).max_element();
-        // The power of two above `half`, so that half * scale < 1. Bounded, so that a trace 2^500 away from a tiny scene
-        // is still at a finite place.
+        // The power of two above `half`, so that half * scale < 1. Bounded, so that a trace 2^500 away from a tiny
+        // scene is still at a finite place.
         let exponent = if half > 0.0 { (half.log2().floor() as i32 + 1).max(-500) } else { 0 };
         Frame { centre, scale: 2f64.powi(-exponent) }
     }

@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::simd::{Simd, VERTICES};
-use super::{Frame, Query};
+use super::places::{Places, VERTICES};
+use super::{Frame, Rank};
 use crate::scene::Model;
 
 /// How many vertices share a distance, that of the nearest: few, so that a query tries few too many; several, so that
@@ -17,25 +17,16 @@ pub struct List {
     len: usize,
     /// The square of the distance from the pivot beyond which vertices may be missing.
     reach: f64,
-    /// The square of the distance from the pivot of the first vertex of each group, as its [`key`]; `None` where the list is
-    /// for any pivot.
+    /// The square of the distance from the pivot of the first vertex of each group, as its [`key`]; `None` where the
+    /// list is for any pivot.
     nearest: Option<Box<[u32]>>,
     /// The last is filled up with NaN, which lies in no triangle.
     pub(super) places: Box<[Places]>,
 }
 
-/// Coordinates of [`VERTICES`] vertices in the frame, and their numbers.
-#[derive(Debug, Clone)]
-#[repr(align(64))]
-pub(super) struct Places {
-    pub x: [f32; VERTICES],
-    pub y: [f32; VERTICES],
-    pub numbers: [u32; VERTICES],
-}
-
 impl List {
-    /// The vertices of these numbers, for queries about `pivot` whose points are no further from it than the square root of
-    /// `reach`. O(vertices log vertices).
+    /// The vertices of these numbers, for queries about `pivot` whose points are no further from it than the square
+    /// root of `reach`. O(vertices log vertices).
     pub fn about(model: &Model, frame: &Frame, pivot: DVec2, reach: f64, numbers: &[u32]) -> Self {
         let keyed = |&v: &u32| {
             let squared = model.vertices()[v as usize].distance_squared(pivot);
@@ -70,8 +61,8 @@ impl List {
         List { len, reach, nearest, places: places.into() }
     }
 
-    /// Whether it serves queries whose points are all no further from the pivot than the square root of `squared`, in the
-    /// scene's unit; infinity for all there are.
+    /// Whether it serves queries whose points are all no further from the pivot than the square root of `squared`, in
+    /// the scene's unit; infinity for all there are.
     #[inline]
     pub fn reaches(&self, squared: f64) -> bool {
         squared <= self.reach
@@ -108,14 +99,16 @@ impl List {
         self.places.iter().flat_map(|p| p.numbers).take(self.len)
     }
 
-    /// The number of the vertex at `place`.
-    pub fn number(&self, place: usize) -> Option<u32> {
+    /// The vertex of this rank.
+    #[inline]
+    pub fn vertex(&self, rank: Rank) -> Option<u32> {
+        let place = rank.0 as usize;
         (place < self.len).then(|| self.places[place / VERTICES].numbers[place % VERTICES])
     }
 
-    /// The place of the vertex with this number, if it is there. O(vertices).
-    pub fn place_of(&self, number: u32) -> Option<u32> {
-        self.numbers().zip(0..).find(|(v, _)| *v == number).map(|(_, place)| place)
+    /// The rank of a vertex, if it is there. O(vertices).
+    pub fn rank_of(&self, vertex: u32) -> Option<Rank> {
+        self.numbers().zip(0..).find(|(v, _)| *v == vertex).map(|(_, rank)| Rank(rank))
     }
 
     /// Their coordinates in the frame, one after the other.
@@ -127,13 +120,6 @@ impl List {
     /// The memory that it takes, in bytes.
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + size_of_val(self.nearest.as_deref().unwrap_or_default()) + size_of_val(&*self.places)
-    }
-
-    /// Adds the numbers of the vertices inside the triangle of `query`, of the first `count` or a few more, to `found`. The
-    /// twin of `shaders/sweep.wgsl`.
-    #[inline]
-    pub fn sweep(&self, simd: Simd, query: &Query, count: usize, found: &mut Vec<u32>) {
-        simd.sweep(self, query, count, found);
     }
 }
 

@@ -3,27 +3,28 @@
 use std::sync::atomic::{AtomicU32, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
-use super::{Frame, List, Query, Simd};
+use super::{Frame, List, ListKey, Query, Simd};
 use glam::DVec2;
 
 use crate::geometry::{higher, lower};
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::visibility::{Scratch, Visibility};
 
 /// How much memory the lists may take unless told otherwise: 256 MiB, enough for some 200,000 pivots.
 pub const LISTS_BUDGET: usize = 256 << 20;
 
-/// After how many queries a pivot gets a list unless told otherwise. Making one costs as much as some 30 looks that go no
-/// further than their queries (about 15 us and 0.5 us at 1,000 vertices), and most pivots that are asked about 8 times are
-/// asked about many times more.
+/// After how many queries a pivot gets a list unless told otherwise. Making one costs as much as some 30 looks that go
+/// no further than their queries (about 15 us and 0.5 us at 1,000 vertices), and most pivots that are asked about 8
+/// times are asked about many times more.
 const WORTH_A_LIST: u32 = 8;
 
-/// How many triangles a look for one query may take before it gives up and all that remain are tried, in scenes where that is
-/// more than a 64th of the vertices: one triangle takes as long as some 150 vertices.
+/// How many triangles a look for one query may take before it gives up and all that remain are tried, in scenes where
+/// that is more than a 64th of the vertices: one triangle takes as long as some 150 vertices.
 const TRIANGLES_A_LOOK: usize = 64;
 
-/// How many triangles the making of a list may look at, in scenes where that is more than a quarter of the vertices: several
-/// times as many as pivots see through where walls hide most of the scene. Pivots that see more try all that remain.
+/// How many triangles the making of a list may look at, in scenes where that is more than a quarter of the vertices:
+/// several times as many as pivots see through where walls hide most of the scene. Pivots that see more try all that
+/// remain.
 const TRIANGLES_A_LIST: usize = 1 << 12;
 
 /// The square of how much further a pivot's first list reaches than the queries before.
@@ -108,8 +109,8 @@ impl Lists {
         self
     }
 
-    /// With looks, and the making of lists, given up after that many triangles: then [`remaining`](Self::remaining) vertices are
-    /// tried.
+    /// With looks, and the making of lists, given up after that many triangles: then [`remaining`](Self::remaining)
+    /// vertices are tried.
     #[must_use]
     pub fn at_most(mut self, triangles: usize) -> Self {
         self.most = Some(triangles);
@@ -119,7 +120,7 @@ impl Lists {
     /// Gets ready for traces inside a box from `low` to `high`: walls out of reach of all traces are left out of the
     /// triangulation. Returns whether what was made before had to be dropped, because these go further than any before.
     ///
-    /// Lists that were used before they were told of any trace are ready for all.
+    /// If lists were used before the first call, their triangulation holds all walls: the call then changes nothing.
     pub fn cover(&mut self, (low, high): (DVec2, DVec2)) -> bool {
         let anchor = self.model.anchor();
         let (mut low, mut high) = (lower(low, anchor), higher(high, anchor));
@@ -177,8 +178,8 @@ impl Lists {
         self.all.get_or_init(|| Arc::new(List::of_any(&self.model, &self.frame, all)))
     }
 
-    /// The list of all vertices at which a rope can turn whose free end keeps to the rules and goes no further than these
-    /// lists were told: that of [`all`](Self::all) where [`keeps_all`](Self::keeps_all). See
+    /// The list of all vertices at which a rope can turn whose free end keeps to the rules and goes no further than
+    /// these lists were told: that of [`all`](Self::all) where [`keeps_all`](Self::keeps_all). See
     /// [`Visibility::only_required`].
     pub fn remaining(&self) -> &Arc<List> {
         self.remaining.get_or_init(|| {
@@ -191,8 +192,8 @@ impl Lists {
         })
     }
 
-    /// How many vertices [`remaining`](Self::remaining) has; `None` before anything was asked that takes knowing which. Makes
-    /// nothing.
+    /// How many vertices [`remaining`](Self::remaining) has; `None` before anything was asked that takes knowing which.
+    /// Makes nothing.
     pub fn remaining_count(&self) -> Option<usize> {
         let all = self.model.vertices().len();
         match (self.keep_all, self.visibility.get()) {
@@ -202,36 +203,37 @@ impl Lists {
         }
     }
 
-    /// Whether every pivot has the list of [`all`](Self::all) vertices: because that was asked for, or because the scene
-    /// cannot be triangulated.
+    /// Whether every pivot has the list of [`all`](Self::all) vertices: because that was asked for, or because the
+    /// scene cannot be triangulated.
     pub fn keeps_all(&self) -> bool {
         self.keep_all || self.visibility().is_none()
     }
 
-    /// A number for `list`, which is that of `pivot`: the pivot, or another for each of the lists for any pivot, whosever it
-    /// is.
-    pub fn key(&self, pivot: u32, list: &Arc<List>) -> u32 {
-        let keys = self.keys() as u32;
-        match list.is_of_any() {
-            false => pivot,
-            true if Arc::ptr_eq(list, self.all()) => keys - 1,
-            true => keys - 2,
-        }
+    /// The key of `list`, which is that of `pivot`: the pivots' own lists come first, then that of the
+    /// [`remaining`](Self::remaining) vertices and that of [`all`](Self::all).
+    pub fn key(&self, pivot: Pivot, list: &Arc<List>) -> ListKey {
+        let pivots = self.entries.len();
+        let key = match list.is_of_any() {
+            false => pivot.index(),
+            true if Arc::ptr_eq(list, self.all()) => pivots + 1,
+            true => pivots,
+        };
+        ListKey(key as u32)
     }
 
-    /// How many different [`key`](Self::key)s there are.
+    /// How many [`key`](Self::key)s there are: each is less than that.
     pub fn keys(&self) -> usize {
         self.entries.len() + 2
     }
 
-    /// The list of `pivot` (a vertex, or the number of vertices for the anchor), for queries whose points are all no further
-    /// from it than the square root of `squared`, in the scene's unit; infinity for any. `None` as long as that is not worth
-    /// making: then [`look_into`](Self::look_into) answers.
+    /// The list of `pivot`, for queries whose points are all no
+    /// further from it than the square root of `squared`, in the scene's unit; infinity for any. `None` as long as that
+    /// is not worth making: then [`look_into`](Self::look_into) answers.
     ///
     /// A pivot's first list goes a little further than its queries so far; the second goes all the way. See
     /// [`Visibility::look`] for what is in it and what making it costs.
-    pub fn of(&self, pivot: u32, squared: f64) -> Option<Arc<List>> {
-        let entry = &self.entries[pivot as usize];
+    pub fn of(&self, pivot: Pivot, squared: f64) -> Option<Arc<List>> {
+        let entry = &self.entries[pivot.index()];
         let list = entry.list.read().unwrap_or_else(PoisonError::into_inner);
         if let Some(list) = list.as_ref().filter(|list| list.reaches(squared)) {
             // Written only if it changes, so that the threads need not take it from each other.
@@ -253,14 +255,14 @@ impl Lists {
         Some(self.make(pivot, reach))
     }
 
-    /// Adds the candidates of a query about `pivot` to `found`, without a list of its own, and returns how many vertices were
-    /// tried.
+    /// Adds the candidates of a query about `pivot` to `found`, without a list of its own, and returns how many
+    /// vertices were tried.
     ///
     /// Looks through the triangles of the scene's triangulation in which the query lies, or tries all that remain where
     /// that is less.
     pub fn look_into(
         &self,
-        pivot: u32,
+        pivot: Pivot,
         query: &Query,
         simd: Simd,
         scratch: &mut Scratch,
@@ -280,7 +282,7 @@ impl Lists {
         }
         found.clear();
         let remaining = self.remaining();
-        remaining.sweep(simd, query, remaining.len(), found);
+        simd.sweep(remaining, query, remaining.len(), found);
         remaining.len()
     }
 
@@ -293,13 +295,13 @@ impl Lists {
     }
 
     #[cold]
-    fn make(&self, pivot: u32, reach: f64) -> Arc<List> {
+    fn make(&self, pivot: Pivot, reach: f64) -> Arc<List> {
         let pool = || self.looks.lock().unwrap_or_else(PoisonError::into_inner);
         let (mut scratch, mut seen) = pool().pop().unwrap_or_default();
         let n = self.model.vertices().len();
         let visibility = self.visibility().expect("where there is none, all pivots have one list");
         let most = self.most.unwrap_or(TRIANGLES_A_LIST.max(n / 4));
-        let at = self.model.vertices().get(pivot as usize).copied().unwrap_or(self.model.anchor());
+        let at = self.model.position(pivot);
         let looked = if reach == f64::INFINITY {
             visibility.look_into(pivot, |_| 0, most, &mut scratch, &mut seen)
         } else {
@@ -310,7 +312,7 @@ impl Lists {
             None => Arc::clone(self.remaining()),
         };
         pool().push((scratch, seen));
-        let entry = &self.entries[pivot as usize];
+        let entry = &self.entries[pivot.index()];
         {
             // All of it under the lock, so that nobody drops a list whose bytes do not count yet.
             let mut slot = entry.list.write().unwrap_or_else(PoisonError::into_inner);

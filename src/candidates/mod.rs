@@ -6,8 +6,11 @@
 mod frame;
 mod list;
 mod lists;
+mod numbers;
+mod places;
 mod query;
 mod simd;
+mod slopes;
 mod window;
 
 use bytemuck::{Pod, Zeroable};
@@ -15,9 +18,11 @@ use bytemuck::{Pod, Zeroable};
 pub use frame::Frame;
 pub use list::List;
 pub use lists::{LISTS_BUDGET, Lists};
+pub use numbers::{DevicePlace, ListKey, Rank};
 pub use query::{ARITHMETIC, LONGEST_NORMAL, MARGIN, Query};
-pub use simd::{LEGS, Simd};
-pub use window::{Line, Slopes, Window, Wrapping};
+pub use simd::Simd;
+pub use slopes::{LEGS, Line, Slopes, Wrapping};
+pub use window::Window;
 
 /// How many vertices a query can name before it overflows.
 ///
@@ -30,13 +35,13 @@ pub const ROOM: usize = 15;
 pub struct Found {
     /// How many vertices lie inside, named or not.
     pub count: u32,
-    /// The places in the list of the first [`ROOM`] of them.
-    pub places: [u32; ROOM],
+    /// The first [`ROOM`] of them.
+    pub places: [DevicePlace; ROOM],
 }
 
 impl Found {
     /// The places of the vertices inside, or `None` if there were more than a query has room for.
-    pub fn places(&self) -> Option<&[u32]> {
+    pub fn places(&self) -> Option<&[DevicePlace]> {
         self.places.get(..self.count as usize)
     }
 }

@@ -1,28 +1,16 @@
 //! The loops that must run at the full width of the processor, compiled for several instruction sets.
 //!
-//! Which of them the processor has is found out at run time (crate `pulp`), so that a binary built for any machine of its
-//! architecture is fast. The loops are written in blocks that the compiler turns into vector instructions; nothing but
-//! speed depends on that: they compute the same numbers with any instruction set, since Rust fuses no products and sums
-//! by itself. `tests/vectors.sh` looks into the binary for the instructions.
+//! Which of them the processor has is found out at run time (crate `pulp`), so that a binary built for any machine of
+//! its architecture is fast. The loops are written in blocks that the compiler turns into vector instructions; nothing
+//! but speed depends on that: they compute the same numbers with any instruction set, since Rust fuses no products and
+//! sums by itself. `tests/vectors.sh` looks into the binary for the instructions.
 
 use glam::DVec2;
 use pulp::{Arch, WithSimd};
 
-use super::list::Places;
-use super::window::Wrapping;
-use super::{List, Query, Slopes};
-
-/// How many points the loops over points take at once: what fits into a vector of AVX2.
-pub(super) const BLOCK: usize = 4;
-
-/// How many points fit into the bits of a mask.
-const MASK: usize = 64;
-
-/// How many legs a mask holds: those between its points.
-pub const LEGS: usize = MASK - 1;
-
-/// How many vertices the loops over vertices take at once.
-pub(super) const VERTICES: usize = 16;
+use super::places::{Places, VERTICES};
+use super::slopes::{BLOCK, Extent, MASK, Slopes, Wrapping};
+use super::{List, Query};
 
 /// The instruction set to use.
 #[derive(Debug, Clone, Copy)]
@@ -40,12 +28,18 @@ impl Simd {
     pub fn baseline() -> Self {
         Simd { arch: Arch::Scalar }
     }
+
+    /// The square of the greatest distance from the pivot of points `from` to `to` of a window.
+    #[inline]
+    pub fn farthest(self, slopes: &Slopes, from: usize, to: usize) -> f64 {
+        self.greatest(&slopes.squared[from..=to])
+    }
 }
 
 /// Makes a method of [`Simd`] out of a function that must be inlined into it: the function is compiled once for each
 /// instruction set. (A closure will not do: it is a function of its own, for the baseline.)
 macro_rules! wide {
-    ($(#[$doc:meta])* $name:ident as $op:ident($($arg:ident: $ty:ty),*) -> $out:ty = $body:ident) => {
+    ($(#[$doc:meta])* $vis:vis $name:ident as $op:ident($($arg:ident: $ty:ty),*) -> $out:ty = $body:ident) => {
         struct $op<'a> {
             $($arg: $ty,)*
             of: std::marker::PhantomData<&'a ()>,
@@ -63,7 +57,7 @@ macro_rules! wide {
         impl Simd {
             $(#[$doc])*
             #[inline]
-            pub(crate) fn $name<'a>(self, $($arg: $ty),*) -> $out {
+            $vis fn $name<'a>(self, $($arg: $ty),*) -> $out {
                 self.arch.dispatch($op { $($arg,)* of: std::marker::PhantomData })
             }
         }
@@ -71,10 +65,12 @@ macro_rules! wide {
 }
 
 wide! {
-    /// Writes the slopes and squared distances of `points` from entry 1 of `slopes` on, as long as they lie before the pivot
-    /// with a slope of at most `steepest`; entry 0 is there. Returns how many they are and the extent of all from entry 0 on.
-    fold as FoldOp(o: DVec2, axis: DVec2, steepest: f64, points: &'a [DVec2], slopes: &'a mut Slopes) -> (usize, Extent)
-        = fold_points
+    /// Writes the slopes and squared distances of `points` from entry 1 of `slopes` on, as long as they lie before the
+    /// pivot with a slope of at most `steepest`; entry 0 is there. Returns how many they are and the extent of all from
+    /// entry 0 on.
+    pub(super) fold as FoldOp(
+        o: DVec2, axis: DVec2, steepest: f64, points: &'a [DVec2], slopes: &'a mut Slopes
+    ) -> (usize, Extent) = fold_points
 }
 
 wide! {
@@ -83,23 +79,17 @@ wide! {
 }
 
 wide! {
-    /// For each line the legs, of the `legs` from `leg` on but at most [`LEGS`], on which something can happen: as bits,
-    /// lowest first. Bits of further legs mean nothing.
-    meet as MeetOp(lines: &'a mut [Wrapping], slopes: &'a Slopes, leg: usize, legs: usize) -> () = meet_lines
+    /// Finds for each line the legs, of the `legs` from `leg` on but at most [`LEGS`](super::LEGS), on which something
+    /// can happen: all but those of which it is certain that both ends lie strictly on one side of the line, or that
+    /// both are nearer than its vertex. On a first leg that starts on its way, the part before is left out. Bits of
+    /// further legs mean nothing.
+    pub meet as MeetOp(lines: &'a mut [Wrapping], slopes: &'a Slopes, leg: usize, legs: usize) -> () = meet_lines
 }
 
 wide! {
-    /// Adds the numbers of the vertices of `list` inside the triangle of `query`, of the first `count` or a few more, to
-    /// `found`.
-    sweep as SweepOp(list: &'a List, query: &'a Query, count: usize, found: &'a mut Vec<u32>) -> () = sweep_list
-}
-
-/// The least and the greatest slope and the greatest squared distance of some points.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Extent {
-    pub low: f64,
-    pub high: f64,
-    pub squared: f64,
+    /// Adds the numbers of the vertices of `list` inside the triangle of `query`, of the first `count` or a few more,
+    /// to `found`. The twin of `shaders/sweep.wgsl`.
+    pub sweep as SweepOp(list: &'a List, query: &'a Query, count: usize, found: &'a mut Vec<u32>) -> () = sweep_list
 }
 
 #[inline(always)]
@@ -193,8 +183,8 @@ fn meet_lines(lines: &mut [Wrapping], slopes: &Slopes, leg: usize, legs: usize) 
     let (slope, squared) = (&slopes.slope[leg..leg + points], &slopes.squared[leg..leg + points]);
     let ((slope, _), (squared, _)) = (slope.as_chunks::<BLOCK>(), squared.as_chunks::<BLOCK>());
     for Wrapping { line, met, .. } in lines {
-        // Bit i: point i lies surely above the line, surely below it, surely nearer than what the line begins at. Each lane
-        // has the bits of its own points, so that they are put together once only.
+        // Bit i: point i lies surely above the line, surely below it, surely nearer than what the line begins at. Each
+        // lane has the bits of its own points, so that they are put together once only.
         let (mut above, mut below, mut near) = ([0u64; BLOCK], [0u64; BLOCK], [0u64; BLOCK]);
         let mut bit: [u64; BLOCK] = std::array::from_fn(|j| 1 << j);
         for (slope, squared) in slope.iter().zip(squared) {

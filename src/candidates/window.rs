@@ -1,23 +1,24 @@
 //! Windows: the legs that one query covers, seen from the pivot.
 //!
-//! Everything is measured against an axis, the first direction of the window: a point's *slope* is the tangent of its angle
-//! from the axis. The legs' slopes span the wedge that the rope's last leg sweeps; and the slope of a line through the
-//! pivot tells on which legs the rope can cross it, without any exact test.
+//! Everything is measured against an axis, the first direction of the window: a point's *slope* is the tangent of its
+//! angle from the axis. The legs' slopes span the wedge that the rope's last leg sweeps; and the slope of a line
+//! through the pivot tells on which legs the rope can cross it, without any exact test.
 
 use glam::DVec2;
 
-use super::simd::{BLOCK, Extent, Simd};
-use super::{Frame, Query};
+use super::slopes::{BLOCK, Extent, Line, Slopes};
+use super::{Frame, Query, Simd};
 
-/// The largest slope in a window: beyond it (56 degrees from the axis) the next window begins. The wedge stays well below
-/// a half turn.
+/// The largest slope in a window: beyond it (56 degrees from the axis) the next window begins. The wedge stays well
+/// below a half turn.
 const STEEPEST: f64 = 1.5;
 
 /// By how much two slopes must differ for their order to be certain: 2^-45.
 ///
-/// With u = 2^-53: a way from the pivot is good to u in each coordinate, so its products with the axis (which is taken as it
-/// is, rounded) are good to 4u times both lengths, and the slope s to 4u (1 + |s|) sqrt(1 + s^2) + u |s|. That is 20u for
-/// points of the window, whose slopes are at most [`STEEPEST`], and 90u for lines, whose slopes are at most [`FLAT`].
+/// With u = 2^-53: a way from the pivot is good to u in each coordinate, so its products with the axis (which is taken
+/// as it is, rounded) are good to 4u times both lengths, and the slope s to 4u (1 + |s|) sqrt(1 + s^2) + u |s|. That is
+/// 20u for points of the window, whose slopes are at most [`STEEPEST`], and 90u for lines, whose slopes are at most
+/// [`FLAT`].
 const CERTAIN: f64 = 1.0 / (1u64 << 45) as f64;
 
 /// By what share squared distances must differ for their order to be certain: each is good to 6u, with u = 2^-53.
@@ -25,22 +26,6 @@ const SURELY: f64 = 1.0 / (1u64 << 45) as f64;
 
 /// Lines of a greater slope do not pass through the window.
 const FLAT: f64 = 4.0;
-
-/// The slopes of a window's points and the squares of their distances from the pivot, in the scene's unit; entry i is point
-/// i of the window. Kept from window to window for its memory.
-#[derive(Debug, Default)]
-pub struct Slopes {
-    pub(super) slope: Vec<f64>,
-    pub(super) squared: Vec<f64>,
-}
-
-impl Slopes {
-    /// The square of the greatest distance from the pivot of points `from` to `to`.
-    #[inline]
-    pub fn farthest(&self, simd: Simd, from: usize, to: usize) -> f64 {
-        simd.greatest(&self.squared[from..=to])
-    }
-}
 
 /// A window of legs about one pivot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,12 +43,12 @@ pub struct Window {
 }
 
 impl Window {
-    /// The longest window about `pivot` that starts with the first of `points` and whose directions do not spread too far;
-    /// `None` if not even one leg fits. `start` is the direction in which the rope's last leg points at the start if that
-    /// is not at the first point, but somewhere on the first leg.
+    /// The longest window about `pivot` that starts with the first of `points` and whose directions do not spread too
+    /// far; `None` if not even one leg fits. `start` is the direction in which the rope's last leg points at the start
+    /// if that is not at the first point, but somewhere on the first leg.
     ///
     /// Fills `slopes` for the points of the window; that of the first means nothing if there is a `start`.
-    /// O(legs), 8 points at a time.
+    /// O(legs), 4 points at a time.
     pub fn fold(
         simd: Simd,
         pivot: DVec2,
@@ -91,8 +76,8 @@ impl Window {
         Query::wedge(frame, pivot, self.axis, (self.low, self.high), self.squared.sqrt())
     }
 
-    /// The line through the pivot along which the rope turns back, if it can pass through the window; `way` leads to the
-    /// pivot from the prior.
+    /// The line through the pivot along which the rope turns back, if it can pass through the window; `way` leads to
+    /// the pivot from the prior.
     pub fn unwrapping(&self, way: DVec2) -> Option<Line> {
         self.line(way, 0.0)
     }
@@ -110,42 +95,5 @@ impl Window {
         // Not a number, for a way of no length, is kept: no slope is then certain.
         let passes_by = slope.abs() > FLAT || slope > self.high + CERTAIN || slope < self.low - CERTAIN;
         (!passes_by).then_some(Line { low: slope - CERTAIN, high: slope + CERTAIN, beyond })
-    }
-}
-
-/// A line through the pivot that the free end must cross for something to happen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Line {
-    /// Between which bounds its slope surely lies.
-    pub(super) low: f64,
-    pub(super) high: f64,
-    /// Nothing happens on legs whose ends are both nearer to the pivot, squared.
-    pub(super) beyond: f64,
-}
-
-/// A line and the legs on which something can happen.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wrapping {
-    /// The vertex round which the rope can be wrapped; for the unwrapping ray, the pivot.
-    pub vertex: u32,
-    /// The line that the free end must cross.
-    pub line: Line,
-    /// The legs, of the [`LEGS`](super::LEGS) from some leg on, on which something can happen, as bits, lowest first.
-    pub met: u64,
-}
-
-impl Wrapping {
-    /// A line of which it is not known yet where it can be met.
-    #[inline]
-    pub fn new(vertex: u32, line: Line) -> Self {
-        Wrapping { vertex, line, met: 0 }
-    }
-
-    /// Finds the legs, of the `legs` from `leg` on but at most [`LEGS`](super::LEGS), on which something can happen: all but
-    /// those of which it is certain that both ends lie strictly on one side of the line, or that both are nearer than its
-    /// vertex. On a first leg that starts on its way, the part before is left out. Bits of further legs mean nothing.
-    #[inline]
-    pub fn meet(simd: Simd, lines: &mut [Wrapping], slopes: &Slopes, leg: usize, legs: usize) {
-        simd.meet(lines, slopes, leg, legs);
     }
 }

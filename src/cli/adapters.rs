@@ -23,7 +23,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             .iter()
             .map(|(a, f32)| {
                 let (name, kind, backend, driver) = (&a.name, a.kind.to_string(), &a.backend, &a.driver);
-                json!({"number": a.number, "name": name, "type": kind, "backend": backend, "driver": driver, "f32": described(f32)})
+                json!({"number": a.number, "name": name, "type": kind, "backend": backend, "driver": driver,
+                    "f32": described(f32)})
             })
             .collect();
         return print_json(&json!({ "adapters": list, "driver_faults": driver_faults() }));

@@ -15,7 +15,7 @@ use tautline::trade::Terms;
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::look::{Look, Target, save};
-use super::summary::{counted, dropped, place};
+use super::words::{counted, dropped, place};
 use super::{print, print_json};
 
 /// How many traces are checked at a time.

@@ -8,7 +8,7 @@ use tautline::scene::read_scene_with;
 use super::failure::Failure;
 use super::input::{FileArgs, note};
 use super::print;
-use super::summary::place;
+use super::words::place;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

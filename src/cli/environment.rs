@@ -11,8 +11,8 @@ pub(crate) fn quieten_vulkan() {
     }
 }
 
-/// Has a file that would grow beyond the limit of its size (`ulimit -f`) fail to be written, as on a full disk. By default the
-/// process would be killed with its files half written.
+/// Has a file that would grow beyond the limit of its size (`ulimit -f`) fail to be written, as on a full disk. By
+/// default the process would be killed with its files half written.
 #[cfg(unix)]
 #[allow(unsafe_code)] // signals are ignored in no other way
 pub(crate) fn outlive_size_limits() {

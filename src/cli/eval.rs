@@ -13,16 +13,17 @@ use super::engine::EngineArgs;
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::progress::{Progress, with_progress};
-use super::summary::{Summary, dropped};
+use super::summary::Summary;
 use super::trade::TradeArgs;
+use super::words::dropped;
 use super::{print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     input: InputArgs,
-    /// Queries of a path planner's benchmark in place of traces: a MovingAI .scen for a scene that is a .map. Each rope is tied
-    /// at a query's start; its free end goes straight to the goal, or along a shortest way from cell to cell
+    /// Queries of a path planner's benchmark in place of traces: a MovingAI .scen for a scene that is a .map. Each rope
+    /// is tied at a query's start; its free end goes straight to the goal, or along a shortest way from cell to cell
     #[arg(
         long, value_name = "FILE", requires = "scene",
         conflicts_with_all = [

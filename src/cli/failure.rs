@@ -32,8 +32,9 @@ impl Failure {
         Failure { code: 2, error }
     }
 
-    /// What the operating system refuses: bad input where the place is not one to write to, whatever the command (no such
-    /// folder, no permission, something else stands there); an internal error where writing broke off, as on a full disk.
+    /// What the operating system refuses: bad input where the place is not one to write to, whatever the command (no
+    /// such folder, no permission, something else stands there); an internal error where writing broke off, as on a
+    /// full disk.
     pub(crate) fn system(kind: ErrorKind, error: anyhow::Error) -> Self {
         match kind {
             ErrorKind::NotFound

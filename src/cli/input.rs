@@ -6,13 +6,13 @@ use anyhow::anyhow;
 use glam::DVec2;
 use tautline::escape::{escaped, escaped_path};
 use tautline::example::{Walker, floor_plan};
-use tautline::parse_number as number;
 use tautline::scene::{AnchorError, Model, Ros, Scene, SceneOptions, Unknown, read_scene_with};
 use tautline::stream::Source;
 use tautline::study::anchor_warnings;
 use tautline::trace::TraceReader;
 
 use super::failure::Failure;
+use super::parse::{above_zero, point};
 use super::violations::{OnViolation, Violations};
 
 /// How many traces the built-in example has, and how they are walked.
@@ -50,8 +50,8 @@ pub(crate) struct FileArgs {
     /// Which ROS's map_server says what cells of a map are occupied: nav2's of ROS 2, or that of ROS 1
     #[arg(long, value_name = "1|2", default_value = "2", value_parser = ros)]
     ros: Ros,
-    /// Take the walls of this layer only; may be given several times. Layers are those of a .dxf, layers and groups of an
-    /// .svg, and of .geojson what the property `layer` says, or as KEY=VALUE what the property KEY does
+    /// Take the walls of this layer only; may be given several times. Layers are those of a .dxf, layers and groups of
+    /// an .svg, and of .geojson what the property `layer` says, or as KEY=VALUE what the property KEY does
     #[arg(long = "layer", value_name = "NAME")]
     layers: Vec<String>,
     /// Leave the walls of this layer out; may be given several times
@@ -92,12 +92,6 @@ impl FileArgs {
     }
 }
 
-/// A number above 0.
-pub(crate) fn above_zero(text: &str) -> Result<f64, String> {
-    let number = number(text).filter(|&x| x > 0.0 && x.is_finite());
-    number.ok_or_else(|| "give a number above 0, such as 0.01".to_owned())
-}
-
 /// Tells what the reader of a scene has to say.
 pub(crate) fn note(path: &Path, scene: &Scene) {
     for note in scene.notes() {
@@ -110,13 +104,6 @@ pub(crate) fn warn(name: &str, model: &Model) {
     for warning in anchor_warnings(model) {
         say!("warning: {name}: {warning}");
     }
-}
-
-/// Two numbers with a comma between them.
-pub(super) fn point(text: &str) -> Result<DVec2, String> {
-    let wrong = || "give two numbers with a comma between them, such as 1.5,-2".to_owned();
-    let (x, y) = text.split_once(',').ok_or_else(wrong)?;
-    Ok(DVec2::new(number(x).ok_or_else(wrong)?, number(y).ok_or_else(wrong)?))
 }
 
 impl InputArgs {

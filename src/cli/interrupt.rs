@@ -1,5 +1,5 @@
-//! Ctrl-C, and a request to end: the process ends at once, in good order, whatever it is doing. That is done by the thread that
-//! hears of it, so that nothing has to be asked to stop: what is still at work is cut off.
+//! Ctrl-C, and a request to end: the process ends at once, in good order, whatever it is doing. That is done by the
+//! thread that hears of it, so that nothing has to be asked to stop: what is still at work is cut off.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -21,8 +21,8 @@ fn last() -> MutexGuard<'static, Option<Last>> {
     LAST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Listens for Ctrl-C from now on, and for requests to end. Files under way vanish at them. What the process was started to
-/// ignore, by nohup say, it goes on to ignore.
+/// Listens for Ctrl-C from now on, and for requests to end. Files under way vanish at them. What the process was
+/// started to ignore, by nohup say, it goes on to ignore.
 pub(crate) fn listen() -> Result<(), Failure> {
     let ignored = ignored();
     ctrlc::set_handler(end).map_err(|e| Failure::internal(e.into()))?;
@@ -79,8 +79,8 @@ fn end() {
     leave(failure.number());
 }
 
-/// Ends the process with that exit code and nothing else. What other threads do must not be taken from under them: a driver that
-/// is being loaded while the handlers of a usual exit run brings the process down with a signal.
+/// Ends the process with that exit code and nothing else. What other threads do must not be taken from under them: a
+/// driver that is being loaded while the handlers of a usual exit run brings the process down with a signal.
 #[cfg(unix)]
 #[allow(unsafe_code)] // there is no safe name for it
 fn leave(code: u8) -> ! {

@@ -20,13 +20,15 @@ pub(crate) struct Look {
     #[arg(long, value_name = "K")]
     pub step: Option<usize>,
     /// A filmstrip: a small picture for each wrap and unwrap, of events FROM to TO [default: 1-24]
-    #[arg(long, value_name = "FROM-TO", num_args = 0..=1, value_parser = frames, conflicts_with_all = ["step", "animate"])]
+    #[arg(long, value_name = "FROM-TO", num_args = 0..=1, value_parser = frames,
+        conflicts_with_all = ["step", "animate"])]
     pub frames: Option<Option<RangeInclusive<usize>>>,
     /// Play the trace: an .svg that moves by itself, or an .html with a slider
     #[arg(long)]
     pub animate: bool,
     /// The part of the plane: `near` the traces, `all` walls, or two corners
-    #[arg(long, value_name = "near|all|X,Y,X,Y", allow_hyphen_values = true, value_parser = part, default_value = "near")]
+    #[arg(long, value_name = "near|all|X,Y,X,Y", allow_hyphen_values = true, value_parser = part,
+        default_value = "near")]
     pub view: Part,
     /// The most rays of the pivot: those nearest to the free end [default: 12, with --frames 0]
     #[arg(long, value_name = "N")]

@@ -18,6 +18,7 @@ mod interrupt;
 mod look;
 mod manual;
 mod named_scene;
+mod parse;
 mod progress;
 mod queries;
 mod spread;
@@ -26,11 +27,12 @@ mod summary;
 mod trade;
 mod tradeoff;
 mod violations;
+mod words;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use say::{print, print_json};
 
@@ -98,8 +100,8 @@ pub(crate) fn run() -> ExitCode {
             Command::Bench(args) => bench::run(&args),
             Command::Tradeoff(args) => tradeoff::run(&args),
             Command::Adapters(args) => adapters::run(&args),
-            Command::Completions(args) => manual::completions(&args),
-            Command::Man(args) => manual::man(&args),
+            Command::Completions(args) => manual::completions(&args, Cli::command()),
+            Command::Man(args) => manual::man(&args, Cli::command()),
         }
     }));
     match outcome {

@@ -64,8 +64,8 @@ impl Progress {
     }
 }
 
-/// Runs `work` while a bar shows how far it is, the rate, and the time left; where stderr is no terminal, lines say so now and
-/// then.
+/// Runs `work` while a bar shows how far it is, the rate, and the time left; where stderr is no terminal, lines say so
+/// now and then.
 pub(crate) fn with_progress<T>(progress: &Progress, job: &Job, work: impl FnOnce() -> T) -> T {
     thread::scope(|scope| {
         let (done, waiting) = sync_channel::<()>(1);
@@ -102,8 +102,8 @@ fn show_bar(progress: &Progress, job: &Job, waiting: &Receiver<()>) {
     bar.finish_and_clear();
 }
 
-/// How long it is from one line to the next: the first comes after ten seconds, each next one after twice as long, up to two
-/// minutes. So a log of a night has some hundreds of lines, and a run of half a minute has two.
+/// How long it is from one line to the next: the first comes after ten seconds, each next one after twice as long, up
+/// to two minutes. So a log of a night has some hundreds of lines, and a run of half a minute has two.
 fn gaps() -> impl Iterator<Item = Duration> {
     (0..).map(|i: u32| Duration::from_secs((10 << i.min(4)).min(120)))
 }

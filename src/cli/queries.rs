@@ -16,7 +16,7 @@ use tautline::stream::Files;
 use tautline::trace::{Trace, settle_owned};
 
 use super::failure::Failure;
-use super::summary::{counted, short};
+use super::words::{counted, short};
 use super::{print, print_json};
 
 /// How far a file's length may be from that of a shortest way, in parts of it: files have six digits.

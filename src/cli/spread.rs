@@ -11,8 +11,8 @@ const HELD: usize = 1 << 16;
 /// The relative error of an approximate median: a fraction of the last of the four digits shown.
 const ERROR: f64 = 1e-5;
 
-/// How many classes of lengths are counted at most: 16 MB. They reach from the largest length down to 10^-18 of it; all that
-/// is shorter counts as that.
+/// How many classes of lengths are counted at most: 16 MB. They reach from the largest length down to 10^-18 of it; all
+/// that is shorter counts as that.
 const CLASSES: u32 = 1 << 21;
 
 /// Mean, median and maximum over the traces.

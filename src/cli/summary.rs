@@ -6,7 +6,6 @@ use std::time::Duration;
 use glam::DVec2;
 use serde_json::{Value, json};
 use tautline::engine::{Engine, Precision};
-use tautline::geometry::number;
 use tautline::rope::{EventKind, TraceRecord};
 use tautline::scene::Model;
 
@@ -17,6 +16,7 @@ use tautline::trade::{Trade, Traded};
 
 use super::spread::{Counts, Lengths, Spread};
 use super::trade::words;
+use super::words::{counted, grouped, place, short};
 
 /// A run in numbers.
 pub(crate) struct Summary {
@@ -67,47 +67,6 @@ fn row(name: &str, spread: Option<Spread>) -> String {
 /// Null where there is nothing to tell of.
 fn json_of(spread: Option<Spread>) -> Value {
     spread.map_or(Value::Null, |spread| spread.json())
-}
-
-/// Four significant digits, in the plain way where that is short.
-pub(super) fn short(x: f64) -> String {
-    let size = x.abs();
-    if size == 0.0 {
-        "0".to_owned()
-    } else if (1e-3..1e6).contains(&size) {
-        let decimals = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
-        format!("{x:.decimals$}")
-    } else {
-        format!("{x:.3e}")
-    }
-}
-
-/// A point, with exponents where plain digits would be many.
-pub(super) fn place(point: DVec2) -> String {
-    format!("({}, {})", number(point.x), number(point.y))
-}
-
-/// So many of what one and several are called.
-pub(super) fn counted(count: u64, one: &str, several: &str) -> String {
-    format!("{} {}", grouped(count), if count == 1 { one } else { several })
-}
-
-/// What is said of walls that were dropped.
-pub(super) fn dropped(walls: usize) -> String {
-    counted(walls as u64, "wall of zero length was dropped", "walls of zero length were dropped")
-}
-
-/// A count with commas between its thousands.
-pub(super) fn grouped(count: u64) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 impl Summary {
@@ -286,7 +245,8 @@ impl Summary {
                 "name": self.scene, "walls": self.walls, "vertices": self.vertices, "remaining": self.remaining,
                 "dropped": self.dropped, "anchor": self.anchor,
             },
-            "engine": self.engine, "precision": self.precision, "on": self.on, "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
+            "engine": self.engine, "precision": self.precision, "on": self.on,
+            "version": env!("CARGO_PKG_VERSION"), "commit": env!("TAUTLINE_COMMIT"),
             "traded": self.traded.as_ref().map(|(trade, traded)| json!({
                 "stride": trade.stride, "simplify": trade.simplify,
                 "vertices_left": traded.vertices_left, "jumps": traded.jumps,

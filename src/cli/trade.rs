@@ -6,8 +6,8 @@ use tautline::scene::Model;
 use tautline::trade::{Terms, Trade, Traded};
 
 use super::failure::Failure;
-use super::input::above_zero;
-use super::summary::{counted, grouped};
+use super::parse::{above_zero, stride};
+use super::words::{counted, grouped};
 
 /// What accuracy is given for speed.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -30,12 +30,6 @@ impl TradeArgs {
     pub(crate) fn terms(&self, name: &str, model: Model) -> Result<Terms, Failure> {
         Terms::new(model, self.trade()).map_err(|e| Failure::input(anyhow!("--simplify: {name}: {e}")))
     }
-}
-
-/// A stride: of so many points one is used.
-pub(crate) fn stride(text: &str) -> Result<u32, String> {
-    let number = text.trim().parse().ok().filter(|&k| k > 0);
-    number.ok_or_else(|| format!("give a whole number from 1 to {}, such as 4", u32::MAX))
 }
 
 /// What was traded and what that came to, in a line.

@@ -9,7 +9,7 @@ use super::windows::Windows;
 use super::{Engine, EngineError, EngineKind, Job, Phase, Precision, Promise, WINDOW};
 use crate::candidates::{List, Lists, ROOM, Simd, Slopes};
 use crate::rope::TraceRecord;
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::trace::{SettledTrace, bounds};
 use crate::visibility::Scratch;
 
@@ -118,7 +118,7 @@ struct Lane<'e> {
     found: Vec<u32>,
     /// The lists used last, by pivot: ropes come back to the pivots from which they came, and what a thread has at hand it
     /// need not ask the others for.
-    recent: [Option<(u32, Arc<List>)>; RECENT],
+    recent: [Option<(Pivot, Arc<List>)>; RECENT],
 }
 
 impl Lane<'_> {
@@ -150,8 +150,8 @@ impl Lane<'_> {
             }
             let pivot = self.windows.pivot(model);
             let squared = self.windows.squared(trace);
-            let serves = |(of, list): &&(u32, Arc<List>)| *of == pivot && list.reaches(squared);
-            let list = &mut self.recent[pivot as usize % RECENT];
+            let serves = |(of, list): &&(Pivot, Arc<List>)| *of == pivot && list.reaches(squared);
+            let list = &mut self.recent[pivot.index() % RECENT];
             if list.as_ref().filter(serves).is_none()
                 && let Some(own) = job.time(Phase::Queries, || lists.of(pivot, squared))
             {
@@ -161,7 +161,7 @@ impl Lane<'_> {
             tests += job.time(Phase::Kernel, || match list.as_ref().filter(serves) {
                 Some((_, list)) => {
                     let count = list.within(squared);
-                    list.sweep(*simd, &query, count, &mut self.found);
+                    simd.sweep(list, &query, count, &mut self.found);
                     count
                 }
                 None => lists.look_into(pivot, &query, *simd, &mut self.scratch, &mut self.found),

@@ -124,9 +124,10 @@ impl LiveRope {
     /// The next event of a leg.
     fn next(&mut self, sweep: &mut Sweep, leg: &Leg) -> Option<(EventKind, u32, Side)> {
         let vertices = self.lists.model().vertices();
-        let (number, o) = (self.rope.contacts().last().map_or(vertices.len() as u32, |c| c.vertex), self.rope.pivot());
+        let o = self.rope.pivot();
+        let pivot = self.lists.model().pivot(self.rope.contacts().last().map(|c| c.vertex));
         let squared = o.distance_squared(leg.a0.at).max(o.distance_squared(leg.a1.at));
-        match self.lists.of(number, squared) {
+        match self.lists.of(pivot, squared) {
             Some(list) => {
                 let near = list.numbers().take(list.within(squared));
                 sweep.next(&mut self.rope, leg, vertices, near)

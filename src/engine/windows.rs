@@ -4,7 +4,7 @@
 use super::progress::Progress;
 use crate::candidates::{Frame, LEGS, Line, Query, ROOM, Simd, Slopes, Window, Wrapping};
 use crate::rope::TraceRecord;
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
 
 /// How many legs the first window of a trace covers at most, and the first after an event.
@@ -53,9 +53,9 @@ impl Windows {
         self.progress.at
     }
 
-    /// The rope's pivot: a vertex, or their number for the anchor.
-    pub(super) fn pivot(&self, model: &Model) -> u32 {
-        self.progress.rope.contacts().last().map_or(model.vertices().len() as u32, |c| c.vertex)
+    /// The rope's pivot.
+    pub(super) fn pivot(&self, model: &Model) -> Pivot {
+        model.pivot(self.progress.rope.contacts().last().map(|c| c.vertex))
     }
 
     /// The query for what comes next, of at most `most` legs; the trace is not done. Leaves the window's slopes in `slopes`.
@@ -126,7 +126,7 @@ impl Windows {
         let mut looked = 0;
         for from in (0..window.legs).step_by(LEGS) {
             let legs = LEGS.min(window.legs - from);
-            Wrapping::meet(simd, &mut self.lines, slopes, from, legs);
+            simd.meet(&mut self.lines, slopes, from, legs);
             let mut met = self.lines.iter().fold(u64::from(turned && from == 0), |met, line| met | line.met);
             met &= (1 << legs) - 1;
             while met != 0 {
@@ -134,7 +134,7 @@ impl Windows {
                 let leg = from + bit.trailing_zeros() as usize;
                 met ^= bit;
                 if leg > looked {
-                    self.progress.skip(trace, self.first + leg, || slopes.farthest(simd, looked + 1, leg));
+                    self.progress.skip(trace, self.first + leg, || simd.farthest(slopes, looked + 1, leg));
                 }
                 let tried =
                     self.lines[self.unwrappings..].iter().filter(|line| line.met & bit != 0 || turned && leg == 0);
@@ -146,7 +146,7 @@ impl Windows {
             }
         }
         if window.legs > looked {
-            self.progress.skip(trace, self.first + window.legs, || slopes.farthest(simd, looked + 1, window.legs));
+            self.progress.skip(trace, self.first + window.legs, || simd.farthest(slopes, looked + 1, window.legs));
         }
         self.adapt(&window, candidates.len());
     }

@@ -8,11 +8,12 @@ use crate::scene::Scene;
 /// The longest wall.
 const LONGEST: i64 = 3;
 
-/// `walls` random walls, each along x or y, with ends at whole numbers, 1 to 3 long. They may share ends, cross, overlap
-/// and be equal. The anchor is (0.5, 0.5), in a cell of the lattice that no wall touches.
+/// `walls` random walls, each along x or y, with ends at whole numbers, 1 to 3 long. They may share ends, cross,
+/// overlap and be equal. The anchor is (0.5, 0.5), in a cell of the lattice that no wall touches.
 ///
 /// They lie in the square of half side `sqrt(walls)`, rounded up, about the origin: walls close about a quarter of the
-/// ways from cell to cell, so that nearly all of the lattice can be reached. The same `seed` gives the same walls. O(walls).
+/// ways from cell to cell, so that nearly all of the lattice can be reached. The same `seed` gives the same walls.
+/// O(walls).
 ///
 /// ```
 /// let scene = tautline::example::lattice_walls(200, 1);

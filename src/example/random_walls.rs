@@ -13,8 +13,8 @@ const LONGEST: f64 = 1.5;
 /// How far every wall stays from the anchor, in the same unit: enough that a rope can start in any direction.
 const CLEARANCE: f64 = 0.1;
 
-/// `walls` random walls in the square [-1, 1]^2, no two of which touch, and the anchor in its centre, off them all. Each is
-/// `1.2 / sqrt(walls)` times a uniform number in 0.1..1.5 long and lies anywhere, in any direction.
+/// `walls` random walls in the square [-1, 1]^2, no two of which touch, and the anchor in its centre, off them all.
+/// Each is `1.2 / sqrt(walls)` times a uniform number in 0.1..1.5 long and lies anywhere, in any direction.
 ///
 /// The same `seed` gives the same walls. O(walls): 20,000 take some hundredths of a second.
 ///
@@ -49,8 +49,8 @@ fn distance_from_origin([a, b]: [DVec2; 2]) -> f64 {
     (a + nearest * way).length()
 }
 
-/// Walls by the cell of a grid in which their middle lies. The cells are as wide as the longest wall, so walls that meet
-/// lie in the same cell or in neighbours.
+/// Walls by the cell of a grid in which their middle lies. The cells are as wide as the longest wall, so walls that
+/// meet lie in the same cell or in neighbours.
 struct Field {
     walls: Vec<[DVec2; 2]>,
     cell: f64,

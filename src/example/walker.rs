@@ -12,8 +12,8 @@ use crate::trace::{SettledTrace, Trace, settle_owned};
 /// By how much the heading turns at most in one step, in radians.
 const TURN: f64 = 0.4;
 
-/// Persistent random walks from the anchor: the heading turns by a uniform angle within 0.4 rad a step, and a step is 0.8
-/// `step` along it plus a uniform offset within 0.2 `step` in x and y. A step that would touch a wall or leave the
+/// Persistent random walks from the anchor: the heading turns by a uniform angle within 0.4 rad a step, and a step is
+/// 0.8 `step` along it plus a uniform offset within 0.2 `step` in x and y. A step that would touch a wall or leave the
 /// scene's bounding box is drawn again with a wider turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walker {

@@ -3,28 +3,30 @@
 use glam::Vec2;
 
 use super::question::{Answer, NOTHING, Question, UNWRAP};
+use crate::candidates::Rank;
 
 /// By how much the wedge is grown, in the frame's unit: 2^-18, as that of the candidate pass.
 const MARGIN: f32 = 1.0 / (1 << 18) as f32;
 
-/// The answer to `question`, in f32 as it comes: the first event of the legs between `points`, of which there is one more
-/// than `question.legs`, about the pivot. `vertices` are those to be tried, the one at place `question.first` first. The
-/// device gives the same unless it fuses or reassociates. O(vertices + vertices in the wedge * legs).
+/// The answer to `question`, in f32 as it comes: the first event of the legs between `points`, of which there is one
+/// more than `question.legs`, about the pivot. `vertices` are those to be tried, the one at place `question.first`
+/// first. The device gives the same unless it fuses or reassociates. O(vertices + vertices in the wedge * legs).
 ///
 /// ```
 /// use glam::Vec2;
-/// use tautline::fast::{Question, decide};
+/// use tautline::candidates::DevicePlace;
+/// use tautline::fast::{NOBODY, Question, decide};
 /// let points = [[2.0, -2.0], [2.0, -1.0], [2.0, 1.0]].map(Vec2::from);
-/// let question = Question { reach: 1.0, legs: 2, count: 1, barred: u32::MAX, ..Question::default() };
+/// let question = Question { reach: 1.0, legs: 2, count: 1, barred: NOBODY, ..Question::default() };
 /// let answer = decide(&question, &points, &[Vec2::new(1.0, 0.0)]);
-/// assert_eq!((answer.leg, answer.place, answer.dir), (1, 0, 1.0));
+/// assert_eq!((answer.leg, answer.place, answer.dir), (1, DevicePlace(0), 1.0));
 /// ```
 pub fn decide(question: &Question, points: &[Vec2], vertices: &[Vec2]) -> Answer {
     let mut met = Answer { leg: NOTHING, ..Answer::default() };
-    for (number, &vertex) in (0..).zip(vertices) {
+    for (rank, &vertex) in (0..).map(Rank).zip(vertices) {
         let p = vertex - question.origin;
         if in_wedge(question, p) {
-            try_vertex(question, points, number, p, &mut met);
+            try_vertex(question, points, rank, p, &mut met);
         }
     }
     try_pivot(question, points, &mut met);
@@ -49,18 +51,17 @@ fn is_left(way: Vec2, a: Vec2) -> bool {
     cross(way, a) >= 0.0
 }
 
-/// Takes vertex `number`, at `p`, for the first event if it is wrapped before that.
-fn try_vertex(question: &Question, points: &[Vec2], number: u32, p: Vec2, met: &mut Answer) {
+/// Takes the vertex of this rank, at `p`, for the first event if it is wrapped before that.
+fn try_vertex(question: &Question, points: &[Vec2], rank: Rank, p: Vec2, met: &mut Answer) {
     for leg in 0..question.legs {
         if leg > met.leg {
             return;
         }
         let (a, b) = (points[leg as usize], points[leg as usize + 1]);
-        let dir =
-            if leg == 0 && question.dir != 0.0 { wraps_further(question, number, p, a, b) } else { wraps(p, a, b) };
+        let dir = if leg == 0 && question.dir != 0.0 { wraps_further(question, rank, p, a, b) } else { wraps(p, a, b) };
         if dir != 0.0 {
             if leg < met.leg || meets_before(p, met.at, dir) {
-                *met = Answer { leg, place: question.first + number, dir, unused: 0, at: p };
+                *met = Answer { leg, place: question.first.of(rank), dir, unused: 0, at: p };
             }
             return;
         }
@@ -78,12 +79,12 @@ fn wraps(p: Vec2, a: Vec2, b: Vec2) -> f32 {
 }
 
 /// The same on a leg on which the rope has turned already.
-fn wraps_further(question: &Question, number: u32, p: Vec2, a: Vec2, b: Vec2) -> f32 {
+fn wraps_further(question: &Question, rank: Rank, p: Vec2, a: Vec2, b: Vec2) -> f32 {
     let dir = question.dir;
     let turn = cross(question.start, p) * dir;
     let comes_after = turn > 0.0 || (turn == 0.0 && question.wrapped == 1 && dot(question.start, p) > 0.0);
     let is_past = is_left(p, b) == (dir > 0.0) && cross(a - p, b - p) * dir >= 0.0;
-    if number != question.barred && comes_after && is_past { dir } else { 0.0 }
+    if rank != question.barred && comes_after && is_past { dir } else { 0.0 }
 }
 
 /// Whether the rope, turning by `dir`, meets `p` before `q`: the nearer first where both lie on one line.
@@ -115,8 +116,8 @@ fn try_pivot(question: &Question, points: &[Vec2], met: &mut Answer) {
     }
 }
 
-/// Whether the rope turns back across the ray of its pivot on the leg from `a` to `b`. If it was across before, by rounding,
-/// it is enough that it points ahead.
+/// Whether the rope turns back across the ray of its pivot on the leg from `a` to `b`. If it was across before, by
+/// rounding, it is enough that it points ahead.
 fn unwraps(question: &Question, a: Vec2, b: Vec2) -> bool {
     let (way, back) = (question.way, question.back);
     let is_past = is_left(way, b) == (back > 0.0);
@@ -124,8 +125,8 @@ fn unwraps(question: &Question, a: Vec2, b: Vec2) -> bool {
     is_past && if was_past { dot(way, b) > 0.0 } else { cross(a, b) * back >= 0.0 }
 }
 
-/// The same on a leg on which the rope has turned already. A ray that lies behind its direction is one that the rope doubles
-/// back on, a half turn away.
+/// The same on a leg on which the rope has turned already. A ray that lies behind its direction is one that the rope
+/// doubles back on, a half turn away.
 fn unwraps_further(question: &Question, a: Vec2, b: Vec2) -> bool {
     let (way, back) = (question.way, question.back);
     let is_past = is_left(way, b) == (back > 0.0) && cross(a, b) * back >= 0.0;

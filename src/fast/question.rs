@@ -3,13 +3,16 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, Vec2};
 
-use crate::candidates::{Frame, Window};
+use crate::candidates::{DevicePlace, Frame, Rank, Window};
 
 /// The leg of an answer when nothing happens.
 pub const NOTHING: u32 = u32::MAX;
 
 /// The place of an answer when the pivot is unwrapped.
-pub const UNWRAP: u32 = u32::MAX;
+pub const UNWRAP: DevicePlace = DevicePlace(u32::MAX);
+
+/// What is barred when no vertex is.
+pub const NOBODY: Rank = Rank(u32::MAX);
 
 /// The furthest that a point can be from the pivot, in the frame's unit: 2^60. What is further is drawn in along its
 /// direction, so that no product of two differences (at most 2^61 each) is infinite.
@@ -18,8 +21,8 @@ const FURTHEST: f64 = (1u64 << 60) as f64;
 /// What is asked of the device: a window of legs about one pivot. The shader's `Question`.
 ///
 /// All coordinates are in the frame's unit, relative to the pivot, but for the vertices of lists that serve several
-/// pivots: these are relative to `origin` only after `origin` is taken from them. The sides of the wedge that the legs span
-/// only save work; a question whose normals are zero tries every vertex on every leg.
+/// pivots: these are relative to `origin` only after `origin` is taken from them. The sides of the wedge that the legs
+/// span only save work; a question whose normals are zero tries every vertex on every leg.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Question {
@@ -31,7 +34,8 @@ pub struct Question {
     pub ahead: Vec2,
     /// What is taken from the vertices.
     pub origin: Vec2,
-    /// The direction in which the rope's last leg points on the first leg of the window, if it has turned there already.
+    /// The direction in which the rope's last leg points on the first leg of the window, if it has turned there
+    /// already.
     pub start: Vec2,
     /// The way to the pivot from the prior.
     pub way: Vec2,
@@ -43,17 +47,16 @@ pub struct Question {
     pub back: f32,
     /// 1 if the event on the first leg was a wrap.
     pub wrapped: u32,
-    /// Where the vertices to be tried begin, in whatever holds them on the device.
-    pub first: u32,
+    /// Where the vertices to be tried begin.
+    pub first: DevicePlace,
     /// How many vertices are to be tried.
     pub count: u32,
     /// Where the window's points begin, among those of all questions.
     pub points: u32,
     /// How many legs it has, at least 1; it has one point more.
     pub legs: u32,
-    /// The vertex, counted from `first`, that was unwrapped on the first leg and cannot be wrapped there again; [`NOTHING`]
-    /// if there is none.
-    pub barred: u32,
+    /// The vertex that was unwrapped on the first leg and cannot be wrapped there again, or [`NOBODY`].
+    pub barred: Rank,
     /// Fills 16 bytes.
     pub unused: [u32; 3],
 }
@@ -65,7 +68,7 @@ pub struct Answer {
     /// The leg on which it happens, or [`NOTHING`].
     pub leg: u32,
     /// The place of the vertex wrapped, or [`UNWRAP`]; means nothing where nothing happens.
-    pub place: u32,
+    pub place: DevicePlace,
     /// The way in which the rope turns there: +1 or -1.
     pub dir: f32,
     /// Fills 8 bytes.
@@ -77,7 +80,7 @@ pub struct Answer {
 impl Question {
     /// A question whose wedge is that of `window`; the whole plane without one. The rest is the caller's.
     pub fn wedge(frame: &Frame, window: Option<&Window>) -> Question {
-        let free = Question { reach: 1.0, barred: NOTHING, ..Question::default() };
+        let free = Question { reach: 1.0, barred: NOBODY, ..Question::default() };
         let Some(window) = window else { return free };
         let axis = window.axis / window.axis.length();
         let at = |slope: f64| axis + slope * axis.perp();

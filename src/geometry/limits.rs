@@ -10,9 +10,10 @@ pub const COORDINATE_MAX: f64 = f64::from_bits((1023 + 500) << 52);
 
 /// The smallest magnitude of a coordinate that is not zero: 2^-450, about 3.4e-136.
 ///
-/// Such a coordinate is a multiple of 2^-502, so every exact product of two differences is a multiple of 2^-1004: no part
-/// of it falls below the smallest f64, 2^-1074. And where such a product does not fit 53 bits, it is at least 2^-951, so
-/// the predicates' error bound, 2^-51 of that, is itself a normal number (above 2^-1022) and as large as it should be.
+/// Such a coordinate is a multiple of 2^-502, so every exact product of two differences is a multiple of 2^-1004: no
+/// part of it falls below the smallest f64, 2^-1074. And where such a product does not fit 53 bits, it is at least
+/// 2^-951, so the predicates' error bound, 2^-51 of that, is itself a normal number (above 2^-1022) and as large as it
+/// should be.
 pub const COORDINATE_MIN: f64 = f64::from_bits((1023 - 450) << 52);
 
 /// Why a coordinate cannot be used.

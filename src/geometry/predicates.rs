@@ -51,7 +51,8 @@ pub fn opposite(a: f64, b: f64) -> bool {
 
 /// For three points on one line: whether the way `o -> p -> q` goes on forwards, with `q` strictly beyond `p`.
 ///
-/// Rounded differences keep their sign, so comparing coordinates is exact. False when `o` equals `p`, or `p` equals `q`.
+/// Rounded differences keep their sign, so comparing coordinates is exact. False when `o` equals `p`, or `p` equals
+/// `q`.
 #[inline]
 pub fn forwards(o: DVec2, p: DVec2, q: DVec2) -> bool {
     let on = |o: f64, p: f64, q: f64| (o < p && p < q) || (o > p && p > q);

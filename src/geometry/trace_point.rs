@@ -92,8 +92,8 @@ pub struct TracePoint {
 }
 
 impl TracePoint {
-    /// Where it stands if its hair, if it has one, has this real length and is turned by about two degrees: for those who
-    /// compute with rounded numbers.
+    /// Where it stands if its hair, if it has one, has this real length and is turned by about two degrees: for those
+    /// who compute with rounded numbers.
     pub fn plucked(self, length: f64) -> DVec2 {
         let Some(hair) = self.hair else { return self.at };
         let way = (hair.witness - self.at) * hair.sense();

@@ -1,12 +1,8 @@
-//! Finding and opening an adapter.
+//! Finding an adapter.
 
 use std::fmt;
-use std::sync::{Arc, Mutex, OnceLock};
 
 use wgpu::{Backends, DeviceType};
-
-use super::arithmetic::{Arithmetic, PROBE_WGSL};
-use super::{GpuError, Tuning, drivers};
 
 /// How to get a software adapter.
 pub const SOFTWARE_HINT: &str = "For a software adapter (Mesa's lavapipe) on Debian or Ubuntu: \
@@ -104,7 +100,7 @@ pub enum AdapterChoice {
 
 impl AdapterChoice {
     /// Those that fit, of all that there are, the one to be taken first.
-    fn fitting<'a>(&self, all: &'a [AdapterSummary]) -> Vec<&'a AdapterSummary> {
+    pub(super) fn fitting<'a>(&self, all: &'a [AdapterSummary]) -> Vec<&'a AdapterSummary> {
         let those = |fits: &dyn Fn(&AdapterSummary) -> bool| all.iter().filter(|a| fits(a)).collect();
         match self {
             AdapterChoice::Best => those(&|_| true),
@@ -121,7 +117,7 @@ impl AdapterChoice {
         }
     }
 
-    fn words(&self) -> String {
+    pub(super) fn words(&self) -> String {
         match self {
             AdapterChoice::Best => "GPU adapter".to_owned(),
             AdapterChoice::Real => "real GPU".to_owned(),
@@ -137,7 +133,8 @@ fn numbered(words: &str) -> Option<usize> {
     words.parse().ok().filter(|_| words.len() <= 2)
 }
 
-fn enumerate() -> Vec<(AdapterSummary, wgpu::Adapter)> {
+/// All adapters that this machine offers, the best first, and how to open them.
+pub(super) fn enumerate() -> Vec<(AdapterSummary, wgpu::Adapter)> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: Backends::PRIMARY,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
@@ -151,153 +148,9 @@ fn enumerate() -> Vec<(AdapterSummary, wgpu::Adapter)> {
     all
 }
 
-/// All adapters that this machine offers, the best first, opened.
-pub fn open_all() -> Vec<(AdapterSummary, Result<Device, GpuError>)> {
-    let opened = |(summary, adapter): (AdapterSummary, wgpu::Adapter)| {
-        let device = Device::of(&summary, &adapter);
-        (summary, device)
-    };
-    enumerate().into_iter().map(opened).collect()
-}
-
 /// All adapters that this machine offers, the best first.
 pub fn adapters() -> Vec<AdapterSummary> {
     enumerate().into_iter().map(|(summary, _)| summary).collect()
-}
-
-struct Complaint {
-    words: String,
-    /// Whether the device is gone for good.
-    lost: bool,
-}
-
-/// An opened adapter. Clones share it.
-#[derive(Clone)]
-pub struct Device {
-    pub(super) device: wgpu::Device,
-    pub(super) queue: wgpu::Queue,
-    summary: AdapterSummary,
-    /// Others that fit as well what was asked for.
-    passed_over: Vec<AdapterSummary>,
-    tuning: Tuning,
-    /// The first thing that the device or its driver complained of since it was last asked.
-    complaint: Arc<Mutex<Option<Complaint>>>,
-    /// What it makes of f32, once it was asked.
-    arithmetic: Arc<OnceLock<Arithmetic>>,
-}
-
-impl Device {
-    /// Opens the first adapter that fits `choice`.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::NoAdapter`] with a list of what there is, or the reason why the adapter cannot be used.
-    pub fn open(choice: &AdapterChoice) -> Result<Device, GpuError> {
-        let all = enumerate();
-        let found: Vec<AdapterSummary> = all.iter().map(|(summary, _)| summary.clone()).collect();
-        let fitting = choice.fitting(&found);
-        let Some((first, others)) = fitting.split_first() else {
-            return Err(GpuError::NoAdapter { wanted: choice.words(), found, advice: drivers::advice() });
-        };
-        let mut device = Device::of(first, &all[first.number].1)?;
-        device.passed_over = others.iter().map(|&other| other.clone()).collect();
-        Ok(device)
-    }
-
-    fn of(summary: &AdapterSummary, adapter: &wgpu::Adapter) -> Result<Device, GpuError> {
-        let unfit = |why: String| GpuError::Unfit { adapter: summary.name.clone(), why };
-        let limits = adapter.limits();
-        if limits.max_uniform_buffer_binding_size < super::pages::PAGE_BYTES {
-            return Err(unfit("its uniform buffers hold less than 64 KiB".to_owned()));
-        }
-        let request = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
-        let (device, queue) =
-            pollster::block_on(adapter.request_device(&request)).map_err(|cause| unfit(cause.to_string()))?;
-        let complaint = Arc::new(Mutex::new(None));
-        let heard = Arc::clone(&complaint);
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| hear(&heard, error.to_string(), false)));
-        let heard = Arc::clone(&complaint);
-        device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                hear(&heard, format!("the device was lost: {message}"), true);
-            }
-        });
-        let tuning = Tuning::of(summary.kind, adapter.get_info().subgroup_max_size);
-        let arithmetic = Arc::default();
-        Ok(Device { device, queue, summary: summary.clone(), passed_over: Vec::new(), tuning, complaint, arithmetic })
-    }
-
-    /// The same device, judged by what the kernel with source `wgsl` finds instead of `probe.wgsl`.
-    ///
-    /// # Errors
-    ///
-    /// As [`arithmetic`](Self::arithmetic).
-    pub fn probed(mut self, wgsl: &str) -> Result<Device, GpuError> {
-        self.arithmetic = Arc::new(OnceLock::from(Arithmetic::of(&self, wgsl)?));
-        Ok(self)
-    }
-
-    /// What the device makes of f32. It is asked once, in some milliseconds.
-    ///
-    /// # Errors
-    ///
-    /// What the device complains of, or that it does not answer.
-    pub fn arithmetic(&self) -> Result<&Arithmetic, GpuError> {
-        if let Some(known) = self.arithmetic.get() {
-            return Ok(known);
-        }
-        let found = Arithmetic::of(self, PROBE_WGSL)?;
-        Ok(self.arithmetic.get_or_init(|| found))
-    }
-
-    /// An error if exact ropes cannot rely on the device's f32.
-    pub(crate) fn certify(&self) -> Result<(), GpuError> {
-        match &self.arithmetic()?.fault {
-            None => Ok(()),
-            Some(fault) => Err(self.unfit(format!("{fault}. Take another adapter, the engine cpu, or precision fast"))),
-        }
-    }
-
-    /// The adapter in words.
-    pub fn summary(&self) -> &AdapterSummary {
-        &self.summary
-    }
-
-    /// Other adapters that fit as well what was asked for.
-    pub fn passed_over(&self) -> &[AdapterSummary] {
-        &self.passed_over
-    }
-
-    /// What suits the adapter.
-    pub fn tuning(&self) -> Tuning {
-        self.tuning
-    }
-
-    /// An error if the device has complained since it was last asked, or is lost.
-    pub(super) fn check(&self) -> Result<(), GpuError> {
-        let Ok(mut complaint) = self.complaint.lock() else { return Err(self.failed("its error handler broke")) };
-        match &*complaint {
-            None => Ok(()),
-            Some(Complaint { words, lost: true }) => Err(self.failed(words)),
-            Some(_) => Err(self.failed(complaint.take().map_or(String::new(), |c| c.words))),
-        }
-    }
-
-    pub(super) fn unfit(&self, why: String) -> GpuError {
-        GpuError::Unfit { adapter: self.summary.name.clone(), why }
-    }
-
-    pub(crate) fn failed(&self, why: impl ToString) -> GpuError {
-        GpuError::Failed { adapter: self.summary.name.clone(), why: why.to_string() }
-    }
-}
-
-fn hear(complaint: &Mutex<Option<Complaint>>, words: String, lost: bool) {
-    if let Ok(mut complaint) = complaint.lock()
-        && complaint.as_ref().is_none_or(|c| lost && !c.lost)
-    {
-        *complaint = Some(Complaint { words, lost });
-    }
 }
 
 #[cfg(test)]

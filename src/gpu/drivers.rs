@@ -1,5 +1,5 @@
-//! What the environment tells the Vulkan loader about drivers, and what is wrong with it: the loader passes over in silence
-//! what it cannot read.
+//! What the environment tells the Vulkan loader about drivers, and what is wrong with it: the loader passes over in
+//! silence what it cannot read.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-/// The variables that say which drivers there are: of the first two, the loader takes the first that is set, and else it
-/// looks for drivers where the system keeps them, to which it adds those of the last.
+/// The variables that say which drivers there are: of the first two, the loader takes the first that is set, and else
+/// it looks for drivers where the system keeps them, to which it adds those of the last.
 const INSTEAD: [&str; 2] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
 const BESIDE: &str = "VK_ADD_DRIVER_FILES";
 
@@ -18,9 +18,9 @@ const HIDING: [&str; 2] = ["VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABL
 /// A driver's description is some hundred bytes.
 const LARGEST: u64 = 1 << 20;
 
-/// What is wrong with the Vulkan drivers that the environment names (`VK_DRIVER_FILES`, or `VK_ICD_FILENAMES` where that is not
-/// set; else `VK_ADD_DRIVER_FILES`), a sentence each: descriptions that are not there, or are none, and libraries that are
-/// not there. Nothing where the environment names none.
+/// What is wrong with the Vulkan drivers that the environment names (`VK_DRIVER_FILES`, or `VK_ICD_FILENAMES` where
+/// that is not set; else `VK_ADD_DRIVER_FILES`), a sentence each: descriptions that are not there, or are none, and
+/// libraries that are not there. Nothing where the environment names none.
 pub fn driver_faults() -> Vec<String> {
     let variable = INSTEAD.into_iter().find(|name| std::env::var_os(name).is_some()).unwrap_or(BESIDE);
     std::env::var_os(variable).map_or_else(Vec::new, |value| faults(variable, &value))

@@ -2,14 +2,21 @@
 
 use bytemuck::Pod;
 
-use crate::candidates::{Found, Query};
+use crate::candidates::{DevicePlace, Found, Query};
 use crate::fast::{Answer, MOST_LEGS, Question};
 
+/// A shader of lists: what all of these share, and its own source.
+macro_rules! of_lists {
+    ($file:literal) => {
+        concat!(include_str!("../../shaders/shared/lists.wgsl"), include_str!($file))
+    };
+}
+
 /// The source of the candidate pass.
-pub const SWEEP_WGSL: &str = include_str!("../../shaders/sweep.wgsl");
+pub const SWEEP_WGSL: &str = of_lists!("../../shaders/sweep.wgsl");
 
 /// The source of the kernel that decides in f32.
-pub const DECIDE_WGSL: &str = include_str!("../../shaders/decide.wgsl");
+pub const DECIDE_WGSL: &str = of_lists!("../../shaders/decide.wgsl");
 
 /// A kernel: a shader, and what it is asked and answers.
 pub trait Kernel {
@@ -22,11 +29,11 @@ pub trait Kernel {
     /// The most points of a trace that come with a query; 0 for a kernel that needs none.
     const POINTS: usize;
 
-    /// The query as it is sent: its list begins at place `first`, its points at number `points` of the round's.
-    fn placed(query: &Self::Query, first: u32, points: u32) -> Self::Query;
+    /// The query as it is sent: its list begins at `first`, its points at number `points` of the round's.
+    fn placed(query: &Self::Query, first: DevicePlace, points: u32) -> Self::Query;
 
     /// Where the vertices to be tried begin and how many they are.
-    fn tried(query: &Self::Query) -> (u32, u32);
+    fn tried(query: &Self::Query) -> (DevicePlace, u32);
 }
 
 /// The candidate pass, `shaders/sweep.wgsl`.
@@ -39,11 +46,11 @@ impl Kernel for Sweeping {
     const NAME: &'static str = "sweep";
     const POINTS: usize = 0;
 
-    fn placed(query: &Query, first: u32, _: u32) -> Query {
+    fn placed(query: &Query, first: DevicePlace, _: u32) -> Query {
         Query { first, ..*query }
     }
 
-    fn tried(query: &Query) -> (u32, u32) {
+    fn tried(query: &Query) -> (DevicePlace, u32) {
         (query.first, query.count)
     }
 }
@@ -58,11 +65,11 @@ impl Kernel for Deciding {
     const NAME: &'static str = "decide";
     const POINTS: usize = MOST_LEGS + 1;
 
-    fn placed(question: &Question, first: u32, points: u32) -> Question {
+    fn placed(question: &Question, first: DevicePlace, points: u32) -> Question {
         Question { first, points, ..*question }
     }
 
-    fn tried(question: &Question) -> (u32, u32) {
+    fn tried(question: &Question) -> (DevicePlace, u32) {
         (question.first, question.count)
     }
 }
@@ -73,9 +80,12 @@ mod tests {
 
     use naga::{Module, TypeInner};
 
-    use super::super::arithmetic::{Outcome, PROBE_WGSL, Sample};
-    use super::super::pages::{PAGE_BYTES, PAGE_VERTICES};
+    use super::super::arithmetic::Outcome;
+    use super::super::buffers::PAGE_BYTES;
+    use super::super::pages::PAGE_VERTICES;
     use super::super::pass::Span;
+    use super::super::probe::PROBE_WGSL;
+    use super::super::sample::Sample;
     use super::*;
     use crate::candidates::ROOM;
     use crate::fast::{NOTHING, UNWRAP};
@@ -114,7 +124,10 @@ mod tests {
         assert_eq!(layout(&module, "Query"), (size_of::<Query>() as u32, query));
         assert_eq!(layout(&module, "Found"), (size_of::<Found>() as u32, members!(Found: count, places)));
         let module = shader(DECIDE_WGSL);
-        let question = members!(Question: right, left, ahead, origin, start, way, reach, dir, back, wrapped, first, count, points, legs, barred);
+        let question = members!(
+            Question: right, left, ahead, origin, start, way, reach, dir, back, wrapped, first, count, points, legs,
+            barred
+        );
         let (size, members) = layout(&module, "Question");
         assert_eq!((size, &members[..question.len()]), (size_of::<Question>() as u32, &question[..]));
         assert_eq!(
@@ -144,7 +157,7 @@ mod tests {
             assert!(wgsl.contains(&format!("const PAGE: u32 = {PAGE_VERTICES}u;")));
         }
         assert!(DECIDE_WGSL.contains(&format!("const NOTHING: u32 = {NOTHING:#x}u;")));
-        assert!(DECIDE_WGSL.contains(&format!("const UNWRAP: u32 = {UNWRAP:#x}u;")));
+        assert!(DECIDE_WGSL.contains(&format!("const UNWRAP: u32 = {:#x}u;", UNWRAP.0)));
         assert!(DECIDE_WGSL.contains(&format!("const MARGIN: f32 = {};", 2f64.powi(-18))));
     }
 }

@@ -4,11 +4,9 @@ use std::ops::Range;
 
 use wgpu::BufferUsages;
 
-use super::adapter::Device;
-use super::pass::binding;
-
-/// The size of a page in bytes: what every device can bind as a uniform buffer.
-pub(super) const PAGE_BYTES: u64 = 1 << 16;
+use super::Device;
+use super::buffers::{PAGE_BYTES, binding};
+use crate::candidates::{DevicePlace, ListKey};
 
 /// The size of a page's header, the first of its places and three unused numbers.
 const HEADER_BYTES: u64 = 16;
@@ -20,20 +18,21 @@ pub(super) const PAGE_VERTICES: u32 = ((PAGE_BYTES - HEADER_BYTES) / 8) as u32;
 const BLOCK_PAGES: u32 = 16;
 
 /// The place of no list.
-const NOWHERE: u32 = u32::MAX;
+const NOWHERE: DevicePlace = DevicePlace(u32::MAX);
 
 /// The pages, in blocks made as they are needed, and which lists lie where.
 ///
-/// Places are numbered through all pages. A list lies in one page if it can, else it begins a page and goes on through the
-/// next ones of its block. When all blocks that the budget allows are full, the one not used for longest is emptied.
+/// Places are numbered through all pages. A list lies in one page if it can, else it begins a page and goes on through
+/// the next ones of its block. When all blocks that the budget allows are full, the one not used for longest is
+/// emptied.
 pub(super) struct Pages {
     layout: wgpu::BindGroupLayout,
     blocks: Vec<Block>,
     /// How many pages a block has.
     size: u32,
     most_blocks: usize,
-    /// The place of each pivot's list, or [`NOWHERE`].
-    places: Vec<u32>,
+    /// The place of each list by its key, or [`NOWHERE`].
+    places: Vec<DevicePlace>,
     /// The block that is being filled.
     open: usize,
     round: u64,
@@ -46,16 +45,16 @@ struct Block {
     bindings: wgpu::BindGroup,
     /// How many of its places are taken, from the first on.
     filled: u32,
-    /// The pivots whose lists lie in it.
-    pivots: Vec<u32>,
+    /// The lists that lie in it.
+    lists: Vec<ListKey>,
     /// The round in which it was used last.
     used: u64,
 }
 
 impl Pages {
-    /// Pages for the lists of `pivots` pivots, of at most `largest` vertices each, within a budget in bytes; two blocks are
-    /// the least.
-    pub(super) fn new(opened: &Device, pivots: usize, largest: usize, budget: usize) -> Self {
+    /// Pages for `lists` lists, of at most `largest` vertices each, within a budget in bytes; two blocks
+    /// are the least.
+    pub(super) fn new(opened: &Device, lists: usize, largest: usize, budget: usize) -> Self {
         let layout = opened.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("page"),
             entries: &[binding(0, wgpu::BufferBindingType::Uniform, true)],
@@ -65,7 +64,7 @@ impl Pages {
         // All places fit into a u32.
         let most = (u32::MAX / PAGE_VERTICES / size) as u64;
         let most_blocks = (budget as u64 / (u64::from(size) * PAGE_BYTES)).clamp(2, most) as usize;
-        let places = vec![NOWHERE; pivots];
+        let places = vec![NOWHERE; lists];
         Pages { layout, blocks: Vec::new(), size, most_blocks, places, open: 0, round: 0, emptied: 0 }
     }
 
@@ -83,18 +82,18 @@ impl Pages {
         self.round += 1;
     }
 
-    /// The place of the list of `pivot`, of `len` vertices; it is written there first, with their `coordinates`, if it is
-    /// not. `None` if all blocks hold lists of this round and none has room left.
+    /// The place of the list of this key, of `len` vertices; it is written there first, with their `coordinates`, if it
+    /// is not. `None` if all blocks hold lists of this round and none has room left.
     pub(super) fn place(
         &mut self,
         opened: &Device,
-        pivot: u32,
+        key: ListKey,
         len: usize,
         coordinates: impl FnOnce() -> Vec<[f32; 2]>,
-    ) -> Option<u32> {
-        let known = self.places[pivot as usize];
+    ) -> Option<DevicePlace> {
+        let known = self.places[key.0 as usize];
         if known != NOWHERE {
-            let block = (known / self.block_places()) as usize;
+            let block = (known.0 / self.block_places()) as usize;
             self.blocks[block].used = self.round;
             return Some(known);
         }
@@ -107,14 +106,14 @@ impl Pages {
                 0
             }
         };
-        let place = self.open as u32 * self.block_places() + start;
+        let place = DevicePlace(self.open as u32 * self.block_places() + start);
         self.write(opened, place, &coordinates());
         let block = &mut self.blocks[self.open];
         // Even, so that the next list begins at an even place too.
         block.filled = (start + size).next_multiple_of(2);
         block.used = self.round;
-        block.pivots.push(pivot);
-        self.places[pivot as usize] = place;
+        block.lists.push(key);
+        self.places[key.0 as usize] = place;
         Some(place)
     }
 
@@ -150,7 +149,7 @@ impl Pages {
 
     fn empty(&mut self, block: usize) {
         let block = &mut self.blocks[block];
-        block.pivots.drain(..).for_each(|pivot| self.places[pivot as usize] = NOWHERE);
+        block.lists.drain(..).for_each(|key| self.places[key.0 as usize] = NOWHERE);
         block.filled = 0;
     }
 
@@ -177,13 +176,13 @@ impl Pages {
             let first = (self.blocks.len() as u32 * self.size + page) * PAGE_VERTICES;
             opened.queue.write_buffer(&buffer, u64::from(page) * PAGE_BYTES, bytemuck::bytes_of(&[first, 0, 0, 0]));
         }
-        Block { buffer, bindings, filled: 0, pivots: Vec::new(), used: 0 }
+        Block { buffer, bindings, filled: 0, lists: Vec::new(), used: 0 }
     }
 
-    /// Writes `coordinates` from `place` on, page by page.
-    fn write(&self, opened: &Device, place: u32, coordinates: &[[f32; 2]]) {
+    /// Writes `coordinates` from `first` on, page by page.
+    fn write(&self, opened: &Device, first: DevicePlace, coordinates: &[[f32; 2]]) {
         let mut rest = coordinates;
-        let mut place = place;
+        let mut place = first.0;
         while !rest.is_empty() {
             let (page, in_page) = (place / PAGE_VERTICES, place % PAGE_VERTICES);
             let (now, later) = rest.split_at(rest.len().min((PAGE_VERTICES - in_page) as usize));
@@ -201,8 +200,8 @@ impl Pages {
     }
 }
 
-/// The pages on which the `count` vertices from place `first` on lie; at least one.
-pub(super) fn pages_of(first: u32, count: u32) -> Range<u32> {
-    let begin = first / PAGE_VERTICES;
-    begin..(first + count).div_ceil(PAGE_VERTICES).max(begin + 1)
+/// The pages on which the `count` vertices from `first` on lie; at least one.
+pub(super) fn pages_of(first: DevicePlace, count: u32) -> Range<u32> {
+    let begin = first.0 / PAGE_VERTICES;
+    begin..(first.0 + count).div_ceil(PAGE_VERTICES).max(begin + 1)
 }

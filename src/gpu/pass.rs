@@ -3,21 +3,20 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 use std::sync::mpsc;
-use std::time::Duration;
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BufferUsages, PollType};
 
+use super::buffers::{PATIENCE, binding, buffer};
 use super::kernel::{Kernel, Sweeping};
 use super::pages::{Pages, pages_of};
 use super::{Device, GpuError, Tuning};
+use crate::candidates::{DevicePlace, ListKey};
 
-/// How many tests a round has at most, one a vertex and point, if that leaves work for one workgroup: 2^32, some seconds on the slowest adapter
-/// known (0.7e9 tests a second), well within the patience of drivers that watch for hanging kernels on real GPUs.
+/// How many tests a round has at most, one a vertex and point, if that leaves work for one workgroup: 2^32, some
+/// seconds on the slowest adapter known (0.7e9 tests a second), well within the patience of drivers that watch for
+/// hanging kernels on real GPUs.
 const TESTS_A_ROUND: usize = 1 << 32;
-
-/// How long a round may take before the device is given up.
-pub(super) const PATIENCE: Duration = Duration::from_secs(120);
 
 /// How far apart the spans lie in their buffer: every device can bind a uniform buffer at multiples of 256 bytes.
 const SPAN_BYTES: u64 = 256;
@@ -67,16 +66,16 @@ struct Sent {
 }
 
 impl<K: Kernel> GpuPass<K> {
-    /// A pass of the kernel with source `wgsl` for the lists of `pivots` pivots, of at most `largest` vertices each, that
-    /// keeps up to `budget` bytes of them on the device. A round takes `tuning.queries` queries, or fewer where the device's
-    /// limits or the size of the lists ask for it.
+    /// A pass of the kernel with source `wgsl` for `lists` lists, of at most `largest` vertices each,
+    /// that keeps up to `budget` bytes of them on the device. A round takes `tuning.queries` queries, or fewer where
+    /// the device's limits or the size of the lists ask for it.
     ///
     /// # Errors
     ///
     /// What the device complains of, be it the shader or the memory.
     pub fn new(
         opened: Device,
-        pivots: usize,
+        lists: usize,
         largest: usize,
         budget: usize,
         tuning: Tuning,
@@ -84,7 +83,7 @@ impl<K: Kernel> GpuPass<K> {
     ) -> Result<Self, GpuError> {
         let device = &opened.device;
         let limits = device.limits();
-        let pages = Pages::new(&opened, pivots, largest, budget);
+        let pages = Pages::new(&opened, lists, largest, budget);
         if pages.block_bytes() > limits.max_buffer_size {
             return Err(opened.unfit(format!("its buffers are too small for lists of {largest} vertices")));
         }
@@ -154,15 +153,20 @@ impl<K: Kernel> GpuPass<K> {
         self.pages.start_round();
     }
 
-    /// Where the list of `pivot`, of `len` vertices, lies on the device until the round is sent: the `first` of queries that
-    /// try it. If it is not there, it is brought, with the `coordinates` of its vertices. `None` if there is no room beside
-    /// the other lists of this round; the first list of a round always finds room.
-    pub fn place(&mut self, pivot: u32, len: usize, coordinates: impl FnOnce() -> Vec<[f32; 2]>) -> Option<u32> {
-        self.pages.place(&self.device, pivot, len, coordinates)
+    /// Where the list of this key, of `len` vertices, lies on the device until the round is sent: the `first` of
+    /// queries that try it. If it is not there, it is brought, with the `coordinates` of its vertices. `None` if there
+    /// is no room beside the other lists of this round; the first list of a round always finds room.
+    pub fn place(
+        &mut self,
+        key: ListKey,
+        len: usize,
+        coordinates: impl FnOnce() -> Vec<[f32; 2]>,
+    ) -> Option<DevicePlace> {
+        self.pages.place(&self.device, key, len, coordinates)
     }
 
-    /// Sends a round of queries, sorted by `first`, whose lists were placed since the round was started, and the points that
-    /// they name.
+    /// Sends a round of queries, sorted by `first`, whose lists were placed since the round was started, and the points
+    /// that they name.
     ///
     /// # Panics
     ///
@@ -295,32 +299,14 @@ fn bind_spans(
     (spans, bindings)
 }
 
-pub(super) fn buffer(device: &wgpu::Device, label: &str, size: usize, usage: BufferUsages) -> wgpu::Buffer {
-    let size = size as u64;
-    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
-}
-
-pub(super) fn binding(
-    binding: u32,
-    ty: wgpu::BufferBindingType,
-    has_dynamic_offset: bool,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None },
-        count: None,
-    }
-}
-
 /// The most that a query takes of any of the round's buffers, in bytes.
 fn bytes_a_query<K: Kernel>() -> usize {
     size_of::<K::Query>().max(size_of::<K::Found>()).max(K::POINTS * size_of::<[f32; 2]>())
 }
 
-/// The pages that queries sorted by `first` touch, in order, and for each which queries do. Of each query it is given where
-/// the vertices to be tried begin and how many they are.
-fn spans(queries: impl Iterator<Item = (u32, u32)>) -> Vec<(u32, Range<u32>)> {
+/// The pages that queries sorted by `first` touch, in order, and for each which queries do. Of each query it is given
+/// where the vertices to be tried begin and how many they are.
+fn spans(queries: impl Iterator<Item = (DevicePlace, u32)>) -> Vec<(u32, Range<u32>)> {
     let mut spans: Vec<(u32, Range<u32>)> = Vec::new();
     // The pages of neighbours are the same or follow each other, since lists do not overlap.
     for (number, (first, count)) in (0..).zip(queries) {
@@ -353,6 +339,7 @@ mod tests {
             (3 * page, 2 * page + 6),
             (5 * page + 6, 8),
         ];
+        let queries = queries.map(|(first, count)| (DevicePlace(first), count));
         assert_eq!(spans(queries.into_iter()), [(0, 0..3), (2, 3..4), (3, 4..6), (4, 4..6), (5, 4..7)]);
     }
 }

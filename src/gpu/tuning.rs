@@ -1,20 +1,21 @@
 //! What is chosen by the adapter: how many queries a round carries and how many lanes a workgroup has.
 
-use super::AdapterKind;
+use super::adapter::AdapterKind;
 
 /// Choices that make one adapter fast and change no result.
 ///
 /// What decides them:
 ///
-/// - *Fixed cost of a round.* Submitting, waiting and mapping cost 60 to 250 us on lavapipe and tens of microseconds over
-///   PCI Express, however few queries there are; and every page of lists that a round touches is a dispatch of its own, at
-///   5 to 20 us on lavapipe and about 2 us on GPUs. A round must carry enough queries that this is small for each.
-/// - *Occupancy.* A query is one lane with a loop of some 40 to 120 tests. A discrete GPU has 50,000 to 200,000 lanes in
-///   flight and hides the latency of its loads only when they are filled; an integrated one has a tenth of that.
-/// - *Caches.* A query and its answer are 112 bytes and a trace's state some 500; on the CPU side a batch should stay near
-///   the last-level cache, which bounds it from above, the more so where the CPU is also the GPU.
-/// - *Wave width.* Waves are 8 lanes on lavapipe with AVX2, 32 on NVIDIA, 32 or 64 on AMD, 8 to 32 on Intel. Queries are
-///   sorted by list, so a wave mostly runs one loop; a workgroup is a small multiple of every wave width.
+/// - *Fixed cost of a round.* Submitting, waiting and mapping cost 60 to 250 us on lavapipe and tens of microseconds
+///   over PCI Express, however few queries there are; and every page of lists that a round touches is a dispatch of its
+///   own, at 5 to 20 us on lavapipe and about 2 us on GPUs. A round must carry enough queries that this is small for
+///   each.
+/// - *Occupancy.* A query is one lane with a loop of some 40 to 120 tests. A discrete GPU has 50,000 to 200,000 lanes
+///   in flight and hides the latency of its loads only when they are filled; an integrated one has a tenth of that.
+/// - *Caches.* A query and its answer are 112 bytes and a trace's state some 500; on the CPU side a batch should stay
+///   near the last-level cache, which bounds it from above, the more so where the CPU is also the GPU.
+/// - *Wave width.* Waves are 8 lanes on lavapipe with AVX2, 32 on NVIDIA, 32 or 64 on AMD, 8 to 32 on Intel. Queries
+///   are sorted by list, so a wave mostly runs one loop; a workgroup is a small multiple of every wave width.
 /// - *Overlap.* Two half-batches: one is on the GPU while the other is on the CPU. More would hide no more, since the
 ///   CPU's part of a round is as long as the GPU's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

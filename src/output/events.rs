@@ -13,9 +13,9 @@ use crate::scene::Scene;
 /// Writes the events of traces to a file that appears when it is finished.
 ///
 /// `.jsonl`, `.csv` and `.parquet` have the same columns: `trace`, `step`, `kind` (`wrap` or `unwrap`), `vertex` (the
-/// scene's number of it), `x`, `y` (where it stands), `side` (`left` or `right`, as a picture of the scene shows it, also where
-/// y points down: [`Side::shown`](crate::rope::Side::shown)). Memory is bounded; it does not grow with the number of events.
-/// Where the scene's wall ends have labels, `label` follows: empty or null for one without.
+/// scene's number of it), `x`, `y` (where it stands), `side` (`left` or `right`, as a picture of the scene shows it,
+/// also where y points down: [`Side::shown`](crate::rope::Side::shown)). Memory is bounded; it does not grow with the
+/// number of events. Where the scene's wall ends have labels, `label` follows: empty or null for one without.
 pub struct EventWriter {
     rows: Rows<EventColumns>,
     labels: Labels,
@@ -74,8 +74,8 @@ impl EventWriter {
         )
     }
 
-    /// Notes something about the events, where they come from say, in the metadata of a Parquet file; the other formats have
-    /// no place for it.
+    /// Notes something about the events, where they come from say, in the metadata of a Parquet file; the other formats
+    /// have no place for it.
     pub fn note(&mut self, key: &str, value: &str) {
         self.rows.note(key, value);
     }

@@ -19,14 +19,15 @@ use crate::scene::Scene;
 /// How many rows of each file are held, and written, at a time.
 const ROWS: usize = 1 << 13;
 
-/// Writes the rows of the Parquet files at `from`, each as [`ResultWriter`](super::ResultWriter) writes it and in the order of
-/// its traces, to one such file at `to`, in the order of all traces, all in `scene`; `notes` go into its metadata. The same rows give the same
-/// bytes, however they are shared out. O(rows) in time for few files; in memory a few thousand rows of those whose traces overlap.
+/// Writes the rows of the Parquet files at `from`, each as [`ResultWriter`](super::ResultWriter) writes it and in the
+/// order of its traces, to one such file at `to`, in the order of all traces, all in `scene`; `notes` go into its
+/// metadata. The same rows give the same bytes, however they are shared out. O(rows) in time for few files; in memory a
+/// few thousand rows of those whose traces overlap.
 ///
 /// # Errors
 ///
-/// A file that cannot be read or whose columns are others, a trace that is there twice, more or fewer `rows`, and those of
-/// [`check_output`](super::check_output).
+/// A file that cannot be read or whose columns are others, a trace that is there twice, more or fewer `rows`, and those
+/// of [`check_output`](super::check_output).
 pub fn merge_results(
     from: &[PathBuf],
     to: &Path,

@@ -63,8 +63,8 @@ pub fn check_output(path: &Path) -> Result<(), WriteError> {
     WholeFile::create(path).map(drop)
 }
 
-/// Whether a file could stand at `path`, whatever it holds: not in the place of a folder, a device, a pipe or an open file such
-/// as `/dev/stdout`. O(1).
+/// Whether a file could stand at `path`, whatever it holds: not in the place of a folder, a device, a pipe or an open
+/// file such as `/dev/stdout`. O(1).
 ///
 /// # Errors
 ///

@@ -1,5 +1,5 @@
-//! Files under way and the passing names under which they grow, of which nothing is left: not when they are dropped, not when
-//! the process ends early by [`abandon`], and not for long when it is killed.
+//! Files under way and the passing names under which they grow, of which nothing is left: not when they are dropped,
+//! not when the process ends early by [`abandon`], and not for long when it is killed.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -35,8 +35,8 @@ pub fn commit() -> impl Drop {
     locked(&COMMIT)
 }
 
-/// Removes all files that are under way in this process, for good: it is about to end, and what is still at work gives no file
-/// its name from now on. Tells whether one has got its name before.
+/// Removes all files that are under way in this process, for good: it is about to end, and what is still at work gives
+/// no file its name from now on. Tells whether one has got its name before.
 pub fn abandon() -> bool {
     let commit = locked(&COMMIT);
     let mut files = locked(&UNDER_WAY);
@@ -48,8 +48,8 @@ pub fn abandon() -> bool {
     PLACED.load(Ordering::SeqCst)
 }
 
-/// The passing name of a file under way. The file is locked as long as it has one, so that another process can tell it from
-/// those that killed processes left.
+/// The passing name of a file under way. The file is locked as long as it has one, so that another process can tell it
+/// from those that killed processes left.
 #[derive(Debug)]
 pub(super) struct Passing {
     /// `None` once the file has its own name.
@@ -60,8 +60,8 @@ pub(super) struct Passing {
 }
 
 impl Passing {
-    /// A new file under way in `folder`, which is to be called `name` in the end. Those that killed processes left of that name
-    /// are removed.
+    /// A new file under way in `folder`, which is to be called `name` in the end. Those that killed processes left of
+    /// that name are removed.
     pub(super) fn create(folder: &Path, name: &OsStr) -> io::Result<(File, Passing)> {
         let prefix = format!(".{}.", name.to_string_lossy());
         sweep(folder, &prefix);

@@ -18,11 +18,12 @@ use crate::scene::Scene;
 /// - `.parquet`: `wraps` as a list of structs of `x` and `y`, `pull` as such a struct or null. Parquet itself has
 ///   structs but no lists of fixed size, so this reads alike in pandas, polars and DuckDB.
 ///
-/// Where the scene's wall ends have labels, `labels` follows: for each of the `wraps` its label or null; in `.csv` that list
-/// as JSON.
+/// Where the scene's wall ends have labels, `labels` follows: for each of the `wraps` its label or null; in `.csv` that
+/// list as JSON.
 ///
-/// Lengths are in the scene's unit. `sides` are `left` and `right` as a picture of the scene shows them, so where y points
-/// down ([`Scene::y_down`]) they are not those of the records, which count as if it pointed up. Memory is bounded; it does not grow with the number of results.
+/// Lengths are in the scene's unit. `sides` are `left` and `right` as a picture of the scene shows them, so where y
+/// points down ([`Scene::y_down`]) they are not those of the records, which count as if it pointed up. Memory is
+/// bounded; it does not grow with the number of results.
 pub struct ResultWriter {
     rows: Rows<ResultColumns>,
     labels: Labels,
@@ -70,8 +71,8 @@ impl ResultWriter {
         )
     }
 
-    /// Notes something about the results, where they come from say, in the metadata of a Parquet file; the other formats have
-    /// no place for it.
+    /// Notes something about the results, where they come from say, in the metadata of a Parquet file; the other
+    /// formats have no place for it.
     pub fn note(&mut self, key: &str, value: &str) {
         self.rows.note(key, value);
     }

@@ -40,8 +40,8 @@ impl<C: Columns> Rows<C> {
         }
     }
 
-    /// Writes all `items`, which are independent of each other: `text` writes one as lines, `push` adds it to the columns.
-    /// Lines are made in parallel and written in order; all of their text is held in memory.
+    /// Writes all `items`, which are independent of each other: `text` writes one as lines, `push` adds it to the
+    /// columns. Lines are made in parallel and written in order; all of their text is held in memory.
     pub(super) fn write_all<T: Sync>(
         &mut self,
         items: &[T],

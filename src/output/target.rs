@@ -20,8 +20,8 @@ impl Target {
     ///
     /// # Errors
     ///
-    /// What stands there cannot be replaced, or not without a loss: anything but a regular file, one that is read-only, has
-    /// other names or is open as this program's own output, and a link to nothing.
+    /// What stands there cannot be replaced, or not without a loss: anything but a regular file, one that is read-only,
+    /// has other names or is open as this program's own output, and a link to nothing.
     pub(super) fn at(path: &Path) -> Result<Self, WriteError> {
         refuse_special(path)?;
         let wrong = |fault: &str| Err(WriteError::target(path, fault));
@@ -84,8 +84,8 @@ impl Target {
         let owner = (found.uid(), found.gid());
         if (new.uid(), new.gid()) != owner && fchown(file, Some(owner.0), Some(owner.1)).is_err() {
             return Err(format!(
-                "the file that stands there belongs to user {} and group {}, and a new one in its place would not; remove \
-                 it first, or give another name",
+                "the file that stands there belongs to user {} and group {}, and a new one in its place would not; \
+                 remove it first, or give another name",
                 owner.0, owner.1
             ));
         }
@@ -99,7 +99,8 @@ impl Target {
     }
 }
 
-/// Refuses what is no place for a whole file, whatever its name: folders, devices, pipes, open files such as `/dev/stdout`.
+/// Refuses what is no place for a whole file, whatever its name: folders, devices, pipes, open files such as
+/// `/dev/stdout`.
 pub(super) fn refuse_special(path: &Path) -> Result<(), WriteError> {
     let kind = match fs::metadata(path) {
         _ if is_descriptor(path) => "an open file of this program",
@@ -114,8 +115,8 @@ pub(super) fn refuse_special(path: &Path) -> Result<(), WriteError> {
     Err(WriteError::target(path, format!("what stands there is not a regular file but {kind}; {why}")))
 }
 
-/// Whether `path` leads to a file through the number under which a process has it open, as `/dev/stdout` and `/dev/fd/3` do.
-/// A new file in its place would not be the one that is open.
+/// Whether `path` leads to a file through the number under which a process has it open, as `/dev/stdout` and
+/// `/dev/fd/3` do. A new file in its place would not be the one that is open.
 fn is_descriptor(path: &Path) -> bool {
     let mut path = path.to_owned();
     // As many links as the system follows.

@@ -23,13 +23,14 @@ pub struct WholeFile {
 }
 
 impl WholeFile {
-    /// Starts the file that is to stand at `path`, in place of what stands there now, whose mode and owner it takes over.
+    /// Starts the file that is to stand at `path`, in place of what stands there now, whose mode and owner it takes
+    /// over.
     ///
     /// # Errors
     ///
-    /// A folder that does not exist or cannot be written to; and what cannot be replaced without a loss: a target that is
-    /// there and is no regular file, is read-only, has several names (hard links), is where standard output or error go, or
-    /// belongs to somebody to whom the new file could not be given.
+    /// A folder that does not exist or cannot be written to; and what cannot be replaced without a loss: a target that
+    /// is there and is no regular file, is read-only, has several names (hard links), is where standard output or error
+    /// go, or belongs to somebody to whom the new file could not be given.
     pub fn create(path: &Path) -> Result<Self, WriteError> {
         let target = Target::at(path)?;
         let Some(name) = target.path.file_name() else {
@@ -64,7 +65,8 @@ impl WholeFile {
         self.take_place(|_| Ok(()))
     }
 
-    /// Puts the file in its place once its bytes are on the disk, so that not even a failing machine leaves half of it there.
+    /// Puts the file in its place once its bytes are on the disk, so that not even a failing machine leaves half of it
+    /// there.
     ///
     /// # Errors
     ///

@@ -49,7 +49,8 @@ pub(super) struct Chart {
 }
 
 impl Chart {
-    /// Values from `x.0` to `x.1` and from `y.0` to `y.1` between the pixels `top` and `bottom`, up to the pixel `right`.
+    /// Values from `x.0` to `x.1` and from `y.0` to `y.1` between the pixels `top` and `bottom`, up to the pixel
+    /// `right`.
     pub(super) fn new(x: (f64, f64), y: (f64, f64), right: f64, top: f64, bottom: f64) -> Self {
         let y = Scale::new(y.0, y.1, bottom, top);
         let y_ticks = Ticks::linear(y.low, y.high, 6);
@@ -93,7 +94,8 @@ impl Chart {
     }
 }
 
-/// One line that says what marks mean: for each a style of a short stroke, and its name. From `x` on, at the height `y`.
+/// One line that says what marks mean: for each a style of a short stroke, and its name. From `x` on, at the height
+/// `y`.
 pub(super) fn legend(svg: &mut Svg, [mut x, y]: [f64; 2], entries: &[(String, String)]) {
     for (style, name) in entries {
         svg.line([x, y], [x + 18.0, y], style);

@@ -1,12 +1,13 @@
 //! Ropes and studies' answers to look at, as SVG, PNG and pages.
 //!
-//! A [`Drawing`] shows traces in a scene and their ropes. The [gallery](Situation) has small ones of all that can happen.
+//! A [`Drawing`] shows traces in a scene and their ropes. The [gallery](Situation) has small ones of all that can
+//! happen.
 //!
-//! The pictures of a study are made of a [`Summary`] and the [`Scene`] it is about, and of nothing else; [`page()`] has all of
-//! them. Each stands on its own white ground, with names of what it shows and the unit.
+//! The pictures of a study are made of a [`Summary`] and the [`Scene`] it is about, and of nothing else; [`page()`] has
+//! all of them. Each stands on its own white ground, with names of what it shows and the unit.
 //!
-//! The same things give the same bytes. Colours stay apart for colour-blind eyes. Where a scene has y point down, so have
-//! its pictures, and left and right are as one sees them.
+//! The same things give the same bytes. Colours stay apart for colour-blind eyes. Where a scene has y point down, so
+//! have its pictures, and left and right are as one sees them.
 
 mod chart;
 mod colour;

@@ -25,8 +25,8 @@ pub fn page(summary: &Summary, pictures: &[(String, String)], run: Option<&Value
     let confidence = number(100.0 * summary.study.tallies.confidence, None);
     let _ = writeln!(
         out,
-        "<p class=\"note\">Lengths are in the scene’s unit. Intervals, in parentheses, hold the true value in {confidence} % \
-         of all studies.</p>"
+        "<p class=\"note\">Lengths are in the scene’s unit. Intervals, in parentheses, hold the true value in \
+         {confidence} % of all studies.</p>"
     );
     let mut section = |title: &str, there: bool, body: String| {
         if there {

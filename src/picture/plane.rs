@@ -43,8 +43,9 @@ impl View {
         View { low: self.low - more, high: self.high + more }
     }
 
-    /// What `near` takes up if that is much less than the whole plane that `all` takes up, else the whole, with a margin
-    /// and no side more than `aspect` times the other; `None` without any point. A point of `near` is one of `all`.
+    /// What `near` takes up if that is much less than the whole plane that `all` takes up, else the whole, with a
+    /// margin and no side more than `aspect` times the other; `None` without any point. A point of `near` is one of
+    /// `all`.
     pub(super) fn of_what_matters(
         near: impl IntoIterator<Item = DVec2>,
         all: impl IntoIterator<Item = DVec2>,

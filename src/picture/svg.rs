@@ -18,7 +18,8 @@ pub(super) enum Align {
 }
 
 impl Svg {
-    /// A document of that size on white ground, so that it can be read on any page; `title` is what a screen reader says.
+    /// A document of that size on white ground, so that it can be read on any page; `title` is what a screen reader
+    /// says.
     pub(super) fn new(width: f64, height: f64, title: &str) -> Self {
         let mut svg = Svg::blank([width, height], title, "fill=\"#333\"");
         svg.rect([0.0, 0.0], [width.ceil(), height.ceil()], "fill=\"#fff\"");
@@ -31,8 +32,8 @@ impl Svg {
         let mut svg = Svg::part();
         let _ = write!(
             svg.out,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
-             font-family=\"sans-serif\" font-size=\"12\" {style}>\n<title>{}</title>\n",
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
+             role=\"img\" font-family=\"sans-serif\" font-size=\"12\" {style}>\n<title>{}</title>\n",
             escape(title)
         );
         svg

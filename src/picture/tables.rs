@@ -11,8 +11,8 @@ use crate::study::{Estimate, Summary, quantity};
 /// How many rows the tables of obstacles and of wall ends have at the most.
 const ROWS: usize = 20;
 
-/// A table: its class, its head, and its rows cell by cell. Cells are text; what a row begins with is its head. In a table
-/// of `words`, the last column may be long.
+/// A table: its class, its head, and its rows cell by cell. Cells are text; what a row begins with is its head. In a
+/// table of `words`, the last column may be long.
 fn table(class: &str, head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut out = format!("<div class=\"wide\"><table class=\"{class}\">\n<thead><tr>");
     for name in head {

@@ -20,8 +20,8 @@ const STRIP: f64 = 64.0;
 /// What lies behind errors that are less than the sample leaves open.
 const GREEN: &str = "#e8f1e4";
 
-/// The colours of methods, in their order, of the eight of M. Okabe and K. Ito (see `colour.rs`) but the yellow, which is
-/// too light for white paper.
+/// The colours of methods, in their order, of the eight of M. Okabe and K. Ito (see `colour.rs`) but the yellow, which
+/// is too light for white paper.
 const COLOURS: [&str; Method::ALL.len()] =
     [BLUE, "#56b4e9", VERMILION, "#009e73", "#cc79a7", "#000", "#8a8a8a", "#e69f00"];
 
@@ -35,9 +35,9 @@ struct Measure {
     noise: Option<f64>,
 }
 
-/// Four panels, of which each shows the time of a trace-step against one measure of error, both logarithmic: traces whose events
-/// differ, traces whose rope at the end differs, the mean error of its length, and the error of the mean length beside what
-/// the sample leaves open of it.
+/// Four panels, of which each shows the time of a trace-step against one measure of error, both logarithmic: traces
+/// whose events differ, traces whose rope at the end differs, the mean error of its length, and the error of the mean
+/// length beside what the sample leaves open of it.
 pub fn tradeoff(measured: &Tradeoff) -> String {
     let noise = measured.points.iter().filter_map(|p| p.length.noise()).fold(f64::INFINITY, f64::min);
     let measures = [
@@ -246,8 +246,8 @@ impl<'a> Panel<'a> {
         svg.text([self.left - 7.0, top - 12.0], Align::Start, "font-size=\"13\"", "ns per trace-step");
     }
 
-    /// Lines from the point that gives nothing away through those of ever longer strides, and through those of ever larger
-    /// tolerances.
+    /// Lines from the point that gives nothing away through those of ever longer strides, and through those of ever
+    /// larger tolerances.
     fn lines(&self, svg: &mut Svg, own: &[&Point], colour: &str) {
         let is_stride = |p: &&&Point| matches!(p.setting, Setting::Stride(_));
         let strides: Vec<[f64; 2]> = own.iter().filter(is_stride).filter_map(|p| self.place(p)).collect();

@@ -35,9 +35,9 @@ impl<'a> Driver<'a> {
         Driver { map, found: vec![(f64::INFINITY, 0); map.width() * map.height()], touched: Vec::new() }
     }
 
-    /// The drive of a query, whose rope `model` is tied at its start: straight where no wall is touched, else along a shortest
-    /// way from cell to cell (A* with octile distances: Hart, Nilsson, Raphael, IEEE Trans. Syst. Sci. Cybern. 4, 1968).
-    /// Diagonal moves need both cells beside them free. `None` if there is no way. O(cells log cells).
+    /// The drive of a query, whose rope `model` is tied at its start: straight where no wall is touched, else along a
+    /// shortest way from cell to cell (A* with octile distances: Hart, Nilsson, Raphael, IEEE Trans. Syst. Sci. Cybern.
+    /// 4, 1968). Diagonal moves need both cells beside them free. `None` if there is no way. O(cells log cells).
     pub fn drive(&mut self, query: &Query, model: &Model) -> Option<Drive> {
         let cells = self.search(query)?;
         let octile = length(&cells);

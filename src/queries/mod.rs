@@ -1,8 +1,8 @@
 //! Queries of path planners' benchmarks: MovingAI's `.scen` files, and how each is driven.
 //!
-//! A query asks for a way between two cells of a [`GridMap`]. Here its rope is tied in the middle of the start's cell, and
-//! its free end is dragged to the middle of the goal's: straight where no wall is touched, else along a shortest way from
-//! cell to cell ([`Driver`]). The file's own length of that way is there to compare with.
+//! A query asks for a way between two cells of a [`GridMap`]. Here its rope is tied in the middle of the start's cell,
+//! and its free end is dragged to the middle of the goal's: straight where no wall is touched, else along a shortest
+//! way from cell to cell ([`Driver`]). The file's own length of that way is there to compare with.
 //!
 //! The format: Sturtevant, "Benchmarks for grid-based pathfinding", IEEE Trans. Comput. Intell. AI Games 4, 2012.
 
@@ -27,8 +27,8 @@ pub struct Query {
     pub start: [usize; 2],
     /// The goal's column and row.
     pub goal: [usize; 2],
-    /// The length of a shortest way from cell to cell that the file gives, in cells: straight moves are 1 long, diagonal ones,
-    /// which need both cells beside them free, the square root of 2.
+    /// The length of a shortest way from cell to cell that the file gives, in cells: straight moves are 1 long,
+    /// diagonal ones, which need both cells beside them free, the square root of 2.
     pub octile: f64,
 }
 
@@ -47,13 +47,13 @@ fn middle([column, row]: [usize; 2]) -> DVec2 {
 /// Reads the queries in `path` for `map`.
 ///
 /// A first line `version ...` may stand there; each further line that is not empty has nine columns with white space
-/// between them: bucket, map, the map's width and height, the start's column and row, the goal's column and row, the octile
-/// length. O(lines).
+/// between them: bucket, map, the map's width and height, the start's column and row, the goal's column and row, the
+/// octile length. O(lines).
 ///
 /// # Errors
 ///
-/// A file that cannot be opened; with its line, a row that is none, one for a map of another size, one of which the start
-/// or the goal is blocked or outside of the map. A file without queries.
+/// A file that cannot be opened; with its line, a row that is none, one for a map of another size, one of which the
+/// start or the goal is blocked or outside of the map. A file without queries.
 pub fn read_queries(path: &Path, map: &GridMap) -> Result<Vec<Query>, ReadError> {
     parse(&read_text(path, SCENE_MAX)?, map).map_err(|fault| fault.in_file(path))
 }

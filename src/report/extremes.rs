@@ -10,8 +10,8 @@ use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::{SettledTrace, settle};
 
-/// How many events a trace may have to be given to a device: it answers one of them a round, so that a longer chain in a lone
-/// trace takes minutes.
+/// How many events a trace may have to be given to a device: it answers one of them a round, so that a longer chain in
+/// a lone trace takes minutes.
 pub const LONGEST_CHAIN: usize = 1500;
 
 /// What one engine made of one family.
@@ -35,12 +35,13 @@ pub struct Errors {
     pub other_events: usize,
     /// How many traces end with another taut rope than they should.
     pub other_ropes: usize,
-    /// The largest error of a final rope's length, as a share of the longest that the right rope of that trace ever was.
+    /// The largest error of a final rope's length, as a share of the longest that the right rope of that trace ever
+    /// was.
     pub worst_length: f64,
 }
 
-/// Evaluates all extreme cases with `fast` on `device` and with `note`, and compares them with `cpu`. Two lines a family, in the
-/// order of [`FAMILIES`]. Under a minute on two cores and a software adapter.
+/// Evaluates all extreme cases with `fast` on `device` and with `note`, and compares them with `cpu`. Two lines a
+/// family, in the order of [`FAMILIES`]. Under a minute on two cores and a software adapter.
 ///
 /// # Errors
 ///
@@ -146,7 +147,8 @@ mod tests {
         errors.add(&truth, &truth);
         assert_eq!(
             errors.to_string(),
-            "| near lines: three wall ends 1 to 2^40 units in the last place off a line | note | 1 | 2 | 3 | 0 | 0 | 0.0e0 |  |"
+            "| near lines: three wall ends 1 to 2^40 units in the last place off a line | note | 1 | 2 | 3 | 0 | 0 | \
+             0.0e0 |  |"
         );
         // Without its last contact, and a quarter of the longest rope, which is 13 long, too long.
         let mut found = truth.clone();

@@ -19,9 +19,9 @@ pub struct NoteErrors {
     pub ends: u64,
 }
 
-/// What listing 1 gets wrong on the first `traces` walks of `walker`, and what it does with the note's remedy for walls on one
-/// line ([`Note::furthest`]). Compares the taut rope after every step with that of the engine `cpu`, which is exact.
-/// O(vertices) a step.
+/// What listing 1 gets wrong on the first `traces` walks of `walker`, and what it does with the note's remedy for walls
+/// on one line ([`Note::furthest`]). Compares the taut rope after every step with that of the engine `cpu`, which is
+/// exact. O(vertices) a step.
 ///
 /// # Errors
 ///

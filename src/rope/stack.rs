@@ -6,8 +6,8 @@ use crate::geometry::{forwards, orient};
 
 /// The side on which a contact lies: the rope turns towards it, or passes it straight.
 ///
-/// Engines compute as if y pointed upwards, whatever the scene says. In a scene whose y points down, a picture shows the
-/// other side: what is written or drawn for people and other programs is [`shown`](Self::shown).
+/// Engines compute as if y pointed upwards, whatever the scene says. In a scene whose y points down, a picture shows
+/// the other side: what is written or drawn for people and other programs is [`shown`](Self::shown).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
     /// The vertex lies left of the rope as seen from the anchor: the rope turns counter-clockwise there.
@@ -155,8 +155,8 @@ impl Rope {
         }
     }
 
-    /// The length up to the pivot and the number of contacts of the taut rope to a free end that is neither on the pivot nor
-    /// such that the rope passes the pivot straight; the way from the pivot is to be added. O(1).
+    /// The length up to the pivot and the number of contacts of the taut rope to a free end that is neither on the
+    /// pivot nor such that the rope passes the pivot straight; the way from the pivot is to be added. O(1).
     pub(crate) fn base(&self) -> (f64, u32) {
         self.contacts.last().map_or((0.0, 0), |o| (o.from.length_to(o.at), o.from.depth + 1))
     }

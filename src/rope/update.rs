@@ -115,9 +115,9 @@ impl Sweep {
         let back = -side.sign();
         match *self {
             Sweep::Start => crosses(x, o, leg).filter(|&dir| dir == back),
-            // After an unwrap the last leg may double back from the pivot along the rope itself (round the end of a wall
-            // along which it lies). The unwrapping ray is then a half turn away, which no leg reaches; but a goal on that
-            // very line would count as past it.
+            // After an unwrap the last leg may double back from the pivot along the rope itself (round the end of a
+            // wall along which it lies). The unwrapping ray is then a half turn away, which no leg reaches; but a goal
+            // on that very line would count as past it.
             Sweep::After { dir, x: pivot, y, .. } => {
                 let doubles_back = || orient(x, pivot, y) == 0.0 && !forwards(x, pivot, y);
                 (dir == back && is_past(x, o, leg, dir) && !doubles_back()).then_some(dir)

@@ -8,8 +8,9 @@ use crate::geometry::CoordinateFault;
 /// The largest height and width: the corners of a map this large can still be numbered with 32 bits.
 pub(super) const SIDE_MAX: usize = 1 << 15;
 
-/// The borders between blocked and other cells, as pairs of corners; corner (x, y) is where cell (x, y) begins. With each,
-/// whether the blocked cells lie on the side of the larger coordinates: below in the grid's own order, or on the right.
+/// The borders between blocked and other cells, as pairs of corners; corner (x, y) is where cell (x, y) begins. With
+/// each, whether the blocked cells lie on the side of the larger coordinates: below in the grid's own order, or on the
+/// right.
 ///
 /// What lies around the map is no cell: its outer edge is no wall. Straight runs of borders are one wall; where four
 /// borders meet, all four end. Walls along rows come first, by row and column, then those along columns, by column and
@@ -40,8 +41,8 @@ pub(super) fn scene(
     mirrored: bool,
 ) -> Result<Scene, CoordinateFault> {
     let wall = |(ends, beyond): ([[usize; 2]; 2], bool)| {
-        // Along a row, larger coordinates lie on the left of a wall to larger columns, along a column on the right, with
-        // rows counted along y.
+        // Along a row, larger coordinates lie on the left of a wall to larger columns, along a column on the right,
+        // with rows counted along y.
         let along_row = ends[0][1] == ends[1][1];
         let right = (along_row != beyond) != mirrored;
         Wall { ends: ends.map(&corner), object: 0, reversed: !right }

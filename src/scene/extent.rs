@@ -1,4 +1,5 @@
-//! The box round lines and curves: where curves themselves turn back, not where their control points or whole circles lie.
+//! The box round lines and curves: where curves themselves turn back, not where their control points or whole circles
+//! lie.
 
 use glam::{DAffine2, DVec2};
 
@@ -82,7 +83,7 @@ fn highest(points: Vec<f64>, mut best: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::curves::Outlines;
+    use crate::scene::outlines::Outlines;
 
     fn p(x: f64, y: f64) -> DVec2 {
         DVec2::new(x, y)

@@ -3,15 +3,15 @@
 use glam::DVec2;
 
 /// What is said of them.
-pub(super) const WARNING: &str = "these coordinates look like longitude and latitude; a length in degrees is no length: \
-    project the scene and its traces to metres first (to a UTM zone, for one)";
+pub(super) const WARNING: &str = "these coordinates look like longitude and latitude; a length in degrees is no \
+    length: project the scene and its traces to metres first (to a UTM zone, for one)";
 
 /// Whether these points look like places on earth in decimal degrees, where the file does not say.
 ///
-/// They do where all lie within 180 and 90, where three of four coordinates have more than three decimals, and where the
-/// box round them is no larger than its distance from the origin. Whole numbers and plans drawn to the centimetre do
-/// not; neither does anything drawn about or beside an origin of its own. Maps of more than a continent and places in the
-/// Gulf of Guinea are missed.
+/// They do where all lie within 180 and 90, where three of four coordinates have more than three decimals, and where
+/// the box round them is no larger than its distance from the origin. Whole numbers and plans drawn to the centimetre
+/// do not; neither does anything drawn about or beside an origin of its own. Maps of more than a continent and places
+/// in the Gulf of Guinea are missed.
 pub(super) fn looks_so(points: &[DVec2]) -> bool {
     let Some(box_) = points.iter().map(|&p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) else {
         return false;

@@ -2,9 +2,9 @@
 //!
 //! The grid only has to be conservative: a wall that meets a box is listed in at least one of the box's cells.
 //! The cell of a coordinate is a chain of operations that round to nearest and so never swap two coordinates, and it is
-//! off by less than 2^-30 of a cell; a wall is listed in all cells that it meets when it is made [`SLACK`] cells wider on
-//! all sides. Coordinates outside of the walls' bounding box fall into a border of cells, which are empty but for walls
-//! right beside them.
+//! off by less than 2^-30 of a cell; a wall is listed in all cells that it meets when it is made [`SLACK`] cells wider
+//! on all sides. Coordinates outside of the walls' bounding box fall into a border of cells, which are empty but for
+//! walls right beside them.
 
 use glam::DVec2;
 
@@ -16,7 +16,8 @@ const CELLS_PER_WALL: usize = 8;
 const ENTRIES_PER_WALL: usize = 8;
 
 /// By how many cells walls are made wider. Far more than the roundings: a place in the grid is off by less than its
-/// value times 2^-51, and a wall's place in a row by less than the number of cells times 2^-50, so 2^-17 for 2^33 cells.
+/// value times 2^-51, and a wall's place in a row by less than the number of cells times 2^-50, so 2^-17 for 2^33
+/// cells.
 const SLACK: f64 = 1e-4;
 
 /// A block of cells: columns and rows, from the first to the last.

@@ -9,8 +9,8 @@ use super::Scene;
 use super::grid::Grid;
 use crate::geometry::{higher, lower};
 
-/// How many walls the grid's cells may list where they are looked through one by one. With more, as in the one cell that
-/// holds all of a town on a map of the world, the tree is faster.
+/// How many walls the grid's cells may list where they are looked through one by one. With more, as in the one cell
+/// that holds all of a town on a map of the world, the tree is faster.
 const FEW: u32 = 48;
 
 /// How many rows of the grid may be looked through one by one.
@@ -52,16 +52,16 @@ impl WallIndex {
         self.tree.locate_in_envelope_intersecting(AABB::from_corners(low.to_array(), high.to_array())).map(|e| e.wall)
     }
 
-    /// Whether it is plain that no wall meets the closed box from `low` to `high`: never true of a box that one meets, and
-    /// nearly always of one that is further from all walls than these are long. O(1).
+    /// Whether it is plain that no wall meets the closed box from `low` to `high`: never true of a box that one meets,
+    /// and nearly always of one that is further from all walls than these are long. O(1).
     #[inline]
     pub fn is_free(&self, low: DVec2, high: DVec2) -> bool {
         self.grid.listed(self.grid.cells(low, high)) == 0
     }
 
-    /// Visits walls with their ends until a visit breaks off: all that meet the closed box from `low` to `high`, and perhaps
-    /// some that only their bounding box makes meet it. A wall may be visited several times. O(1) where none is near, else
-    /// O(log walls + walls near the box).
+    /// Visits walls with their ends until a visit breaks off: all that meet the closed box from `low` to `high`, and
+    /// perhaps some that only their bounding box makes meet it. A wall may be visited several times. O(1) where none is
+    /// near, else O(log walls + walls near the box).
     #[inline]
     pub fn visit<B>(
         &self,

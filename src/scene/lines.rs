@@ -22,8 +22,8 @@ impl Lines {
         self.current = (self.objects.len() as u32 - 1, false);
     }
 
-    /// Goes on with the object that was begun as number `object`, whose outline goes against the walls to come if they are
-    /// `reversed`.
+    /// Goes on with the object that was begun as number `object`, whose outline goes against the walls to come if they
+    /// are `reversed`.
     pub(super) fn resume(&mut self, object: u32, reversed: bool) {
         self.current = (object, reversed);
     }

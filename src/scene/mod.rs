@@ -15,7 +15,10 @@ mod lines;
 mod model;
 mod movingai;
 mod object;
+mod options;
+mod outlines;
 mod pen;
+mod pivot;
 mod read;
 mod ros_map;
 mod sectors;
@@ -33,7 +36,9 @@ pub use model::{AnchorError, Model};
 pub use movingai::GridMap;
 pub(crate) use object::MEMBER;
 pub use object::{Inside, Object, Wall};
-pub use read::{Ros, SceneOptions, Unknown, read_scene, read_scene_with};
+pub use options::{Ros, SceneOptions, Unknown};
+pub use pivot::Pivot;
+pub use read::{read_scene, read_scene_with};
 pub(crate) use sectors::{Sectors, by_angle};
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.
@@ -121,8 +126,8 @@ impl Scene {
         self
     }
 
-    /// The same scene with other walls between its vertices in place of its own: each with the number of a wall of this scene
-    /// for which it stands, and whether it goes the other way.
+    /// The same scene with other walls between its vertices in place of its own: each with the number of a wall of this
+    /// scene for which it stands, and whether it goes the other way.
     pub(crate) fn with_walls(&self, walls: impl IntoIterator<Item = ([u32; 2], usize, bool)>) -> Self {
         let stands = |(ends, wall, turned): ([u32; 2], usize, bool)| {
             let (object, reversed) = self.drawn[wall];
@@ -178,8 +183,8 @@ impl Scene {
         layers
     }
 
-    /// The label of each vertex: that of the first wall that names it, if that wall's object has one. Empty if no object
-    /// with walls has a label. O(walls).
+    /// The label of each vertex: that of the first wall that names it, if that wall's object has one. Empty if no
+    /// object with walls has a label. O(walls).
     pub fn labels(&self) -> Vec<Option<&str>> {
         let label = |wall: usize| self.objects[self.object_of(wall)].label.as_deref();
         if (0..self.walls.len()).all(|wall| label(wall).is_none()) {
@@ -245,8 +250,8 @@ impl Scene {
         self.dropped
     }
 
-    /// What the reader of the scene's file has to say to its user: what a unit is, what was passed over, how closely walls
-    /// follow curves, and that degrees are no lengths. Sentences without a full stop.
+    /// What the reader of the scene's file has to say to its user: what a unit is, what was passed over, how closely
+    /// walls follow curves, and that degrees are no lengths. Sentences without a full stop.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -262,7 +267,8 @@ fn listed(counts: &BTreeMap<&str, usize>) -> String {
     all.join(", ")
 }
 
-/// Whether `name` looks as if it was to mark the anchor, such as `Anchor`, `anchors` and `anchor 2`, but for the right one.
+/// Whether `name` looks as if it was to mark the anchor, such as `Anchor`, `anchors` and `anchor 2`, but for the right
+/// one.
 fn nearly_anchor(name: &str) -> bool {
     let name = name.trim();
     if !name.get(..6).is_some_and(|start| start.eq_ignore_ascii_case("anchor")) {

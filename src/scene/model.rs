@@ -49,8 +49,8 @@ impl Model {
         Model { walls: Arc::new(Walls { scene, index, numbers }), anchor, border: None }.tied(anchor)
     }
 
-    /// The same with the rope tied at `anchor`; scene and index are shared. O(log walls + walls near it), and the walls of the
-    /// solids on whose border it stands.
+    /// The same with the rope tied at `anchor`; scene and index are shared. O(log walls + walls near it), and the walls
+    /// of the solids on whose border it stands.
     ///
     /// # Errors
     ///
@@ -85,15 +85,17 @@ impl Model {
         self.scene().vertices()
     }
 
-    /// Whether the segment from `a` to `b` touches no wall at all, its ends included: [`touched`](Self::touched) finds none.
+    /// Whether the segment from `a` to `b` touches no wall at all, its ends included: [`touched`](Self::touched) finds
+    /// none.
     #[inline]
     pub fn is_clear(&self, a: DVec2, b: DVec2) -> bool {
         self.touched(a, b).is_none()
     }
 
-    /// A wall that the segment from `a` to `b` touches, its ends included. A wall that ends at `a` is none in the way unless
-    /// the segment runs along it, so that one can leave a wall's end; nor is one on which the anchor stands, if that is `a`,
-    /// unless the segment leads into what is solid behind it. O(1) where no wall is near, else O(log walls + walls near it).
+    /// A wall that the segment from `a` to `b` touches, its ends included. A wall that ends at `a` is none in the way
+    /// unless the segment runs along it, so that one can leave a wall's end; nor is one on which the anchor stands, if
+    /// that is `a`, unless the segment leads into what is solid behind it. O(1) where no wall is near, else O(log
+    /// walls + walls near it).
     pub fn touched(&self, a: DVec2, b: DVec2) -> Option<u32> {
         let is_tied = a == self.anchor && self.border.is_some();
         if is_tied && self.leads_into_solid(b) {
@@ -133,7 +135,8 @@ impl Model {
         self.border.as_ref().map(|(sectors, solid)| (sectors, solid.as_slice()))
     }
 
-    /// Whether the way from the anchor towards `b`, which is not along a wall, leads into a solid on whose border it stands.
+    /// Whether the way from the anchor towards `b`, which is not along a wall, leads into a solid on whose border it
+    /// stands.
     fn leads_into_solid(&self, b: DVec2) -> bool {
         let Some((sectors, solid)) = &self.border else { return false };
         b != self.anchor && sectors.find(b).is_err_and(|sector| solid[sector])

@@ -2,7 +2,8 @@
 
 use glam::{DAffine2, DVec2};
 
-use super::curves::{Curve, Ellipse, Outlines, Piece};
+use super::curves::{Curve, Ellipse, Piece};
+use super::outlines::Outlines;
 use crate::geometry::{CoordinateFault, check_point};
 
 /// Draws into [`Outlines`]. All points are in the pen's own coordinates; curves go from where the last piece ended.
@@ -18,9 +19,16 @@ pub(super) struct Pen<'a> {
 /// What drawing says of coordinates that cannot be computed with.
 pub(super) type Drawn = Result<(), CoordinateFault>;
 
+impl Outlines {
+    /// A pen that draws here what it is told in other coordinates.
+    pub(super) fn pen(&mut self, transform: DAffine2) -> Pen<'_> {
+        Pen::new(self, transform)
+    }
+}
+
 impl<'a> Pen<'a> {
     /// A pen that draws what it is told in the coordinates before `transform`.
-    pub(super) fn new(outlines: &'a mut Outlines, transform: DAffine2) -> Self {
+    fn new(outlines: &'a mut Outlines, transform: DAffine2) -> Self {
         Pen { outlines, transform, first: DVec2::ZERO, here: DVec2::ZERO, size: 0.0 }
     }
 

@@ -7,8 +7,8 @@ use glam::DVec2;
 use super::{Inside, Scene, WallIndex};
 use crate::geometry::{Hair, TracePoint, Turn, between, left_of, orient};
 
-/// The directions of the walls at one point, as points towards which they go, sorted counter-clockwise. Sector i is what
-/// lies between direction i and the next, counter-clockwise.
+/// The directions of the walls at one point, as points towards which they go, sorted counter-clockwise. Sector i is
+/// what lies between direction i and the next, counter-clockwise.
 #[derive(Debug, Clone)]
 pub(crate) struct Sectors {
     pub(crate) at: DVec2,
@@ -76,8 +76,8 @@ pub(super) fn walls_at(scene: &Scene, index: &WallIndex, at: DVec2) -> impl Iter
     })
 }
 
-/// Whether `point`, which has a hair, lies inside of an object with closed outlines: by how often they go round it (Sunday's
-/// winding number, "Inclusion of a point in a polygon", 2001), with exact signs.
+/// Whether `point`, which has a hair, lies inside of an object with closed outlines: by how often they go round it
+/// (Sunday's winding number, "Inclusion of a point in a polygon", 2001), with exact signs.
 fn holds(scene: &Scene, object: usize, point: TracePoint) -> bool {
     // Whether `p` lies on the height of the point or below: the point's hair is never level.
     let is_below = |p: DVec2| {

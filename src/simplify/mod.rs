@@ -1,23 +1,23 @@
 //! Fewer vertices for nearly the same scene: what a coast or a map has in detail that no rope of interest feels.
 //!
-//! A vertex `v` at which two walls meet, `u-v` and `v-w`, can go: one wall `u-w` takes their place. That is done only where it
-//! changes nothing but lengths:
+//! A vertex `v` at which two walls meet, `u-v` and `v-w`, can go: one wall `u-w` takes their place. That is done only
+//! where it changes nothing but lengths:
 //!
-//! - Nothing lies in the closed triangle `u`, `v`, `w`: no vertex, no anchor, no other wall but those that end at `u` or `w`
-//!   and lead away from it. So `v` can be moved onto the line from `u` to `w` with everything else staying where it is, and no
-//!   wall meets another on the way: the scene before and after are the same up to a bending of the plane. Walls never meet that
-//!   did not, nothing changes sides, and traces go between the same walls.
+//! - Nothing lies in the closed triangle `u`, `v`, `w`: no vertex, no anchor, no other wall but those that end at `u`
+//!   or `w` and lead away from it. So `v` can be moved onto the line from `u` to `w` with everything else staying where
+//!   it is, and no wall meets another on the way: the scene before and after are the same up to a bending of the plane.
+//!   Walls never meet that did not, nothing changes sides, and traces go between the same walls.
 //! - All vertices that went for a wall lie within the tolerance of it. Then the walls lie within it as well, both ways:
-//!   distance from a segment is convex, so along a wall that went it is greatest at an end; and the nearest point of the new
-//!   wall moves steadily from `u` to `w` while one goes along the old ones, so each of its points is the nearest one to some
-//!   point of theirs.
-//! - Obstacles only give way. Where the rope reaches one side of the walls only, as at a closed obstacle, the triangle must
-//!   lie on the other side. Then space is only gained, and traces that kept to the rules keep to them: inner corners stay, at
-//!   which no rope bends. Where both sides are reached, as at walls that end somewhere, or where neither is, any triangle will
-//!   do, and a trace that passed through it may cross the new wall.
+//!   distance from a segment is convex, so along a wall that went it is greatest at an end; and the nearest point of
+//!   the new wall moves steadily from `u` to `w` while one goes along the old ones, so each of its points is the
+//!   nearest one to some point of theirs.
+//! - Obstacles only give way. Where the rope reaches one side of the walls only, as at a closed obstacle, the triangle
+//!   must lie on the other side. Then space is only gained, and traces that kept to the rules keep to them: inner
+//!   corners stay, at which no rope bends. Where both sides are reached, as at walls that end somewhere, or where
+//!   neither is, any triangle will do, and a trace that passed through it may cross the new wall.
 //!
-//! A vertex in line with its neighbours is treated alike, with both sides for the triangle's: a trace may stand on a wall's end
-//! but not inside a wall, so it stays where only one side is reached.
+//! A vertex in line with its neighbours is treated alike, with both sides for the triangle's: a trace may stand on a
+//! wall's end but not inside a wall, so it stays where only one side is reached.
 
 mod near;
 mod sides;
@@ -44,16 +44,16 @@ pub enum SimplifyError {
     Span,
 }
 
-/// The scene with fewer vertices, for ropes that are tied at any of `anchors`: by at most `tolerance`, in the scene's unit, no
-/// wall of either scene is further from those of the other.
+/// The scene with fewer vertices, for ropes that are tied at any of `anchors`: by at most `tolerance`, in the scene's
+/// unit, no wall of either scene is further from those of the other.
 ///
-/// Its vertices are among the scene's, bit for bit, and numbered anew; anchor, direction of y and notes are the scene's. All
-/// but the comparison with the tolerance, of a rounded distance, is decided by exact signs. The vertex that moves walls least
-/// goes first, of several the one that stands for the fewest others, of those the one with the smallest number. The same input
-/// gives the same scene.
+/// Its vertices are among the scene's, bit for bit, and numbered anew; anchor, direction of y and notes are the
+/// scene's. All but the comparison with the tolerance, of a rounded distance, is decided by exact signs. The vertex
+/// that moves walls least goes first, of several the one that stands for the fewest others, of those the one with the
+/// smallest number. The same input gives the same scene.
 ///
-/// O(n log n) for scenes whose walls are short compared with the scene and stand for few vertices each; O(n^2) at worst, as where
-/// many walls meet at one end or each vertex that goes leaves one that costs more.
+/// O(n log n) for scenes whose walls are short compared with the scene and stand for few vertices each; O(n^2) at
+/// worst, as where many walls meet at one end or each vertex that goes leaves one that costs more.
 ///
 /// ```
 /// use tautline::scene::Scene;
@@ -72,7 +72,8 @@ pub enum SimplifyError {
 ///
 /// # Errors
 ///
-/// A tolerance that is not above 0 or not finite, an anchor at which no rope can be tied, a scene that cannot be triangulated.
+/// A tolerance that is not above 0 or not finite, an anchor at which no rope can be tied, a scene that cannot be
+/// triangulated.
 ///
 /// # Panics
 ///

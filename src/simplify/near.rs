@@ -24,8 +24,8 @@ impl Near {
         self.tree.remove(&Place::new(at.to_array(), number));
     }
 
-    /// A point in the closed triangle, or segment, between three of them, other than these. Exact. O(log n + points in its
-    /// bounding box).
+    /// A point in the closed triangle, or segment, between three of them, other than these. Exact. O(log n + points in
+    /// its bounding box).
     pub(super) fn inside(&self, corners: [(u32, DVec2); 3]) -> Option<u32> {
         let [p, q, r] = corners.map(|corner| corner.1);
         let turn = orient(p, q, r);

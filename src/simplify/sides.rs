@@ -30,8 +30,9 @@ pub(super) fn is_clean(model: &Model, wall: u32) -> bool {
     model.index().visit(lower(a, b), higher(a, b), visit).is_continue()
 }
 
-/// For each wall that ends where `may_go` says so: whether it may be moved into the space on its left and on its right, for
-/// ropes that are tied at any of `anchors`. That is so unless a rope may reach that side and may not reach the other.
+/// For each wall that ends where `may_go` says so: whether it may be moved into the space on its left and on its right,
+/// for ropes that are tied at any of `anchors`. That is so unless a rope may reach that side and may not reach the
+/// other.
 ///
 /// O(anchors * triangles), and the triangles round the vertices that may go.
 pub(super) fn yielding(

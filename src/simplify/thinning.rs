@@ -33,7 +33,8 @@ impl Wall {
 /// A vertex that may go. The least is the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Offer {
-    /// The bits of the distance of the furthest vertex that the new wall stands for: of numbers from 0 on, they are in order.
+    /// The bits of the distance of the furthest vertex that the new wall stands for: of numbers from 0 on, they are in
+    /// order.
     distance: u64,
     /// How many they are. Walls that stand for few come first, so that no wall gathers one vertex after the other.
     replaced: u32,
@@ -91,8 +92,8 @@ impl<'a> Thinning<'a> {
         }
     }
 
-    /// The walls that are left, in the order of the first of those for which they stand: that one's number, and whether they
-    /// go against it.
+    /// The walls that are left, in the order of the first of those for which they stand: that one's number, and whether
+    /// they go against it.
     pub(super) fn walls(&self) -> impl Iterator<Item = ([u32; 2], usize, bool)> {
         let left = |(number, wall): (usize, &Option<Wall>)| wall.as_ref().map(|wall| (wall.ends, number, wall.turned));
         self.walls.iter().enumerate().filter_map(left)

@@ -14,9 +14,9 @@ use crate::scene::Model;
 use crate::trace::{SettledTrace, Trace, TraceReader};
 use crate::trade::Terms;
 
-/// How many points the traces of a batch have together at most. A batch of long traces has fewer of them, so that memory
-/// stays bounded: 64 MB of points for each of the two batches under way: one that is read and checked, one that is
-/// evaluated. Engines that can make use of more traces at once than others get up to eight times as much.
+/// How many points the traces of a batch have together at most. A batch of long traces has fewer of them, so that
+/// memory stays bounded: 64 MB of points for each of the two batches under way: one that is read and checked, one that
+/// is evaluated. Engines that can make use of more traces at once than others get up to eight times as much.
 const POINTS: RangeInclusive<usize> = 1 << 22..=1 << 25;
 
 /// Where traces come from.
@@ -77,9 +77,9 @@ pub struct Batches {
 }
 
 impl Batches {
-    /// Begins to read batches of at most `traces` traces, and of a bounded number of points. The thread ends with the source,
-    /// with the first error, or when nobody waits any more; it is not waited for then, since reading from a pipe may take for
-    /// ever.
+    /// Begins to read batches of at most `traces` traces, and of a bounded number of points. The thread ends with the
+    /// source, with the first error, or when nobody waits any more; it is not waited for then, since reading from a
+    /// pipe may take for ever.
     pub fn start(source: Source, terms: Terms, traces: usize) -> Self {
         let size = source.size();
         // Without room in between: a batch that is ready waits in the thread, and the one after it is not read yet.

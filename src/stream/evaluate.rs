@@ -55,13 +55,14 @@ impl Stage<'_> {
     }
 }
 
-/// Evaluates all `batches` and has their ropes written to `files`, which appear at the end, all or none. `watch` is told of each
-/// batch when it is read and when it is evaluated. The job may be stopped from another thread. Memory is bounded by two batches.
+/// Evaluates all `batches` and has their ropes written to `files`, which appear at the end, all or none. `watch` is
+/// told of each batch when it is read and when it is evaluated. The job may be stopped from another thread. Memory is
+/// bounded by two batches.
 ///
 /// # Errors
 ///
-/// What can go wrong with the traces, the engine or the files; the first trace that breaks the rules, if it is to end the run;
-/// [`EngineError::Stopped`](crate::engine::EngineError::Stopped) when the job was stopped.
+/// What can go wrong with the traces, the engine or the files; the first trace that breaks the rules, if it is to end
+/// the run; [`EngineError::Stopped`](crate::engine::EngineError::Stopped) when the job was stopped.
 pub fn evaluate(
     mut batches: Batches,
     engine: &mut dyn Engine,

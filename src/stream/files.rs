@@ -36,8 +36,8 @@ struct Running {
 type Written = (Vec<WholeFile>, Duration);
 
 impl Files {
-    /// Results go to `out`, events to `events`, where they are asked for, for ropes in `model`. The notes go into the metadata of
-    /// Parquet files.
+    /// Results go to `out`, events to `events`, where they are asked for, for ropes in `model`. The notes go into the
+    /// metadata of Parquet files.
     pub fn new(
         out: Option<&Path>,
         events: Option<&Path>,

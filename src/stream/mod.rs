@@ -1,5 +1,5 @@
-//! Traces in, ropes out: reads traces batch by batch, evaluates them, and writes their ropes, all at the same time and in bounded
-//! memory.
+//! Traces in, ropes out: reads traces batch by batch, evaluates them, and writes their ropes, all at the same time and
+//! in bounded memory.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -28,34 +28,11 @@
 //! ```
 
 mod batches;
+mod error;
 mod evaluate;
 mod files;
 
 pub use batches::{Batch, Batches, Source};
+pub use error::StreamError;
 pub use evaluate::{OnViolation, Stage, Times, evaluate};
 pub use files::Files;
-
-use crate::engine::EngineError;
-use crate::output::WriteError;
-use crate::read_error::ReadError;
-use crate::trace::Violation;
-
-/// Why a stream of traces ended early. No file has appeared then.
-#[derive(Debug, thiserror::Error)]
-pub enum StreamError {
-    /// The traces cannot be read.
-    #[error(transparent)]
-    Read(#[from] ReadError),
-    /// A trace breaks the rules.
-    #[error("{0}")]
-    Violation(Box<Violation>),
-    /// The ropes cannot be evaluated, or the job was stopped.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// The files cannot be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// More was to be written after an error.
-    #[error("the files were ended before")]
-    Ended,
-}

@@ -59,12 +59,12 @@ pub(super) struct Place {
 impl Region {
     /// What can be reached from the anchor; `None` if it has no area.
     pub(super) fn reached(model: &Model, visibility: &Visibility) -> Option<Self> {
-        Region::new(model, visibility, &visibility.reached(model.vertices().len() as u32))
+        Region::new(model, visibility, &visibility.reached(model.pivot(None)))
     }
 
     /// The triangles that hold what is visible from the anchor; `None` if they have no area.
     pub(super) fn seen(model: &Model, visibility: &Visibility) -> Option<Self> {
-        Region::new(model, visibility, &visibility.seen(model.vertices().len() as u32))
+        Region::new(model, visibility, &visibility.seen(model.pivot(None)))
     }
 
     fn new(model: &Model, visibility: &Visibility, triangles: &[u32]) -> Option<Self> {

@@ -71,7 +71,7 @@ fn pocket(model: &Model, (low, high): (DVec2, DVec2)) -> Option<f64> {
         return None;
     }
     let visibility = Visibility::new(model)?;
-    let reached = visibility.reached(model.vertices().len() as u32);
+    let reached = visibility.reached(model.pivot(None));
     // The mesh goes on far outside.
     let is_outside = |p: DVec2| p.cmplt(low).any() || p.cmpgt(high).any();
     if reached.is_empty()

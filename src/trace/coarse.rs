@@ -6,18 +6,18 @@ use super::{SettledTrace, Trace};
 use crate::scene::Model;
 
 impl SettledTrace {
-    /// The trace on coarser terms: straight from every `k`-th of its points to the next, and to the last, among the walls of
-    /// `model`, which has the anchor for which the trace was settled. Its scene is that of the trace, or one that was
-    /// [simplified](crate::simplify::simplify()) from it.
+    /// The trace on coarser terms: straight from every `k`-th of its points to the next, and to the last, among the
+    /// walls of `model`, which has the anchor for which the trace was settled. Its scene is that of the trace, or one
+    /// that was [simplified](crate::simplify::simplify()) from it.
     ///
     /// Where a longer step would touch a wall, the trace is followed point by point instead, and that is
-    /// [counted](Self::jumps). So a trace that keeps to the rules still does, but for simplified walls that are in its way:
-    /// these steps are counted [as well](Self::crossings). What the trace does against the rules [as it was
+    /// [counted](Self::jumps). So a trace that keeps to the rules still does, but for simplified walls that are in its
+    /// way: these steps are counted [as well](Self::crossings). What the trace does against the rules [as it was
     /// given](Self::violation) is kept, in steps that are left out, too.
     ///
-    /// Steps keep their numbers: what happens on a longer step is said of the last of those that it stands for. What the trace
-    /// went round between the points is passed straight, so a wall that lies there is passed on the other side if the longer
-    /// step does not touch it.
+    /// Steps keep their numbers: what happens on a longer step is said of the last of those that it stands for. What
+    /// the trace went round between the points is passed straight, so a wall that lies there is passed on the other
+    /// side if the longer step does not touch it.
     ///
     /// O(points + walls near the longer steps and those that are followed), through the model's index.
     ///

@@ -11,7 +11,8 @@ use crate::scene::{Model, Sectors, by_angle};
 #[derive(Debug, Clone)]
 pub(super) struct Corner {
     sectors: Sectors,
-    /// Which of them are solid: of the anchor, from where a trace starts. Whoever comes from elsewhere comes from what is free.
+    /// Which of them are solid: of the anchor, from where a trace starts. Whoever comes from elsewhere comes from what
+    /// is free.
     solid: Vec<bool>,
 }
 

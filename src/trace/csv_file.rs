@@ -1,8 +1,8 @@
 //! Traces as CSV: a header `trace,x,y` and one row a point.
 //!
-//! Lines without quotes need no parser: they end at line ends and their fields at commas. They are read in blocks, whose
-//! pieces are read in parallel. From the first block with a quote on (or with line ends of old Macs), the crate `csv`
-//! reads the rest, record by record.
+//! Lines without quotes need no parser: they end at line ends and their fields at commas. They are read in blocks,
+//! whose pieces are read in parallel. From the first block with a quote on (or with line ends of old Macs), the crate
+//! `csv` reads the rest, record by record.
 
 use std::io::{Chain, Cursor, Read};
 use std::path::{Path, PathBuf};

@@ -2,8 +2,8 @@
 
 use std::io::{self, Read};
 
-/// How many bytes of lines a thread reads at a time: enough that switching costs little, and few enough that many threads
-/// have work.
+/// How many bytes of lines a thread reads at a time: enough that switching costs little, and few enough that many
+/// threads have work.
 const PIECE: usize = 1 << 18;
 
 /// How long a line may be, in bytes: what goes on without an end is no table, and is not held in memory.
@@ -12,8 +12,9 @@ pub(super) const LINE_MAX: usize = 1 << 16;
 /// What is said of a longer one.
 pub(super) const LINE_TOO_LONG: &str = "a line of more than 65536 bytes, so this is no table of points";
 
-/// Reads on for about `size` bytes after `start`, and returns the whole lines, the start of the next and whether the input
-/// has ended; then what is left is a whole line too. What has no line end within [`LINE_MAX`] bytes counts as whole.
+/// Reads on for about `size` bytes after `start`, and returns the whole lines, the start of the next and whether the
+/// input has ended; then what is left is a whole line too. What has no line end within [`LINE_MAX`] bytes counts as
+/// whole.
 pub(super) fn whole_lines(input: &mut impl Read, start: Vec<u8>, size: usize) -> io::Result<(Vec<u8>, Vec<u8>, bool)> {
     let mut block = start;
     loop {
@@ -71,7 +72,8 @@ pub(super) fn first_line(text: &[u8]) -> (&[u8], &[u8]) {
 /// What the parser reads, with what is needed to say in which line a row starts.
 ///
 /// The parser's own line numbers are off where a row follows an empty line or a line that ends with CR LF, because it
-/// takes those line ends as part of the next row. And it would take a quote that never ends for one row, whatever comes.
+/// takes those line ends as part of the next row. And it would take a quote that never ends for one row, whatever
+/// comes.
 pub(super) struct Watched<R> {
     input: R,
     /// What was read since [`forget`](Self::forget), and where that starts.

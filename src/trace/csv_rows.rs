@@ -62,8 +62,8 @@ impl Header {
         Ok(Header { fields, width: found.len() })
     }
 
-    /// The numbers in one row's fields. Where these are not UTF-8, they come with replacement characters, which are no part of
-    /// a number.
+    /// The numbers in one row's fields. Where these are not UTF-8, they come with replacement characters, which are no
+    /// part of a number.
     pub(super) fn row<T: AsRef<str> + Default>(&self, fields: impl Iterator<Item = T>) -> Result<Row, String> {
         let mut texts: [T; 4] = Default::default();
         let mut width = 0;

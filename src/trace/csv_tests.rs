@@ -73,8 +73,8 @@ fn a_header_is_needed() {
         ),
         (
             "trace\tx\ty\r\n0\t0\t0\n",
-            "line 1: no column trace in the header \"trace\\tx\\ty\"; it is separated by tabulators: separate columns by \
-             commas"
+            "line 1: no column trace in the header \"trace\\tx\\ty\"; it is separated by tabulators: separate columns \
+             by commas"
                 .into(),
         ),
         ("trace,step,x,y,step\n", format!("line 1: two columns step in the header \"trace,step,x,y,step\"; {rest}")),
@@ -108,12 +108,14 @@ fn faults_name_line_column_and_text() {
         ("0,0,0\n0,0\n", "line 3: 2 fields; the header has 3".into()),
         (
             "0,0,0\n0,0,5,2,5\n",
-            "line 3: 5 fields; the header has 3; a decimal comma makes two fields of a number, so write 1.5, not 1,5".into(),
+            "line 3: 5 fields; the header has 3; a decimal comma makes two fields of a number, so write 1.5, not \
+             1,5"
+            .into(),
         ),
         (
             "0;1;2\n",
-            "line 2: 1 fields; the header has 3; the fields are separated by semicolons here: write commas, and 1.5, not \
-             1,5"
+            "line 2: 1 fields; the header has 3; the fields are separated by semicolons here: write commas, and 1.5, \
+             not 1,5"
                 .into(),
         ),
         ("0,\"1,5\",2\n", format!("line 2: column x: \"1,5\" {coordinate}; its decimal comma must be a point")),
@@ -121,9 +123,16 @@ fn faults_name_line_column_and_text() {
         ("0,++1,0\n", format!("line 2: column x: \"++1\" {coordinate}")),
         (
             "0,0,1e-400\n",
-            "line 2: column y: \"1e-400\" is too small for a number of 64 bits, and not 0; write 0 if that is meant".into(),
+            "line 2: column y: \"1e-400\" is too small for a number of 64 bits, and not 0; write 0 if that is \
+             meant"
+                .into(),
         ),
-        ("0,1e-310,0\n", "line 2: column x: \"1e-310\" is too small for a number of 64 bits, and not 0; write 0 if that is meant".into()),
+        (
+            "0,1e-310,0\n",
+            "line 2: column x: \"1e-310\" is too small for a number of 64 bits, and not 0; write 0 if \
+            that is meant"
+                .into(),
+        ),
     ] {
         for start in ["", "\u{feff}"] {
             let text = format!("{start}trace,x,y\n{rows}");

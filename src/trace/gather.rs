@@ -28,8 +28,8 @@ pub(super) struct Gatherer {
 }
 
 impl Gatherer {
-    /// Adds rows: the numbers of their traces, their steps if they have any, and what gives the points of some of them. A
-    /// fault comes with its row.
+    /// Adds rows: the numbers of their traces, their steps if they have any, and what gives the points of some of them.
+    /// A fault comes with its row.
     pub(super) fn extend<I>(
         &mut self,
         ids: &[u64],
@@ -75,7 +75,8 @@ impl Gatherer {
         Ok(())
     }
 
-    /// The first of the next steps of the last trace that does not come after the one before it, and what is wrong with it.
+    /// The first of the next steps of the last trace that does not come after the one before it, and what is wrong with
+    /// it.
     fn out_of_order(&mut self, steps: &[u64]) -> Option<(usize, String)> {
         for (i, &step) in steps.iter().enumerate() {
             if let Some(last) = self.last_step.replace(step).filter(|&last| step <= last) {
@@ -100,8 +101,8 @@ impl Gatherer {
         self.traces.len() > traces || self.points - last.points.len() > points
     }
 
-    /// Gives away the first traces that are whole, as many as fit a batch but at least one; `ended` says that the last one
-    /// is whole too.
+    /// Gives away the first traces that are whole, as many as fit a batch but at least one; `ended` says that the last
+    /// one is whole too.
     pub(super) fn take(&mut self, traces: usize, points: usize, ended: bool) -> Option<Vec<Trace>> {
         let whole = if ended { self.traces.len() } else { self.traces.len().saturating_sub(1) };
         let mut sum = 0usize;

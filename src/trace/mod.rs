@@ -6,6 +6,7 @@ mod csv_file;
 mod csv_lines;
 mod csv_rows;
 mod gather;
+mod given;
 mod parquet_columns;
 mod parquet_file;
 mod pluck;
@@ -16,21 +17,9 @@ mod settle_truth;
 mod settled;
 mod slide;
 
-use glam::DVec2;
-
+pub use given::Trace;
 pub use read::{TraceReader, read_traces};
 pub(crate) use settle::{first_violation, settle_clear};
 pub use settle::{settle, settle_owned};
 pub(crate) use settled::Walked;
 pub use settled::{SettledTrace, Violation, ViolationKind, bounds};
-
-/// One trace: its number and its points, in the scene's frame and unit.
-///
-/// Point 0 is where the free end starts, visible from the anchor; step k moves it from point k-1 to point k.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Trace {
-    /// The number that results name it by.
-    pub id: u64,
-    /// The points; at least one. Each within the limits of [`check_point`](crate::geometry::check_point).
-    pub points: Vec<DVec2>,
-}

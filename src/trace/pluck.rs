@@ -6,7 +6,7 @@ use std::rc::Rc;
 use glam::DVec2;
 
 use super::corner::Corner;
-use super::settle::violation;
+use super::settled::violation;
 use super::slide::{Stay, choose_sides, incoming, outgoing};
 use super::{SettledTrace, ViolationKind};
 use crate::geometry::Hair;

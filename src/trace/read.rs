@@ -13,9 +13,9 @@ use crate::read_file::{open, special};
 /// Reads the traces in `path`: columns `trace` (a whole number from 0), `x` and `y`, as `.csv` or `.parquet`.
 ///
 /// Columns may stand in any order and among others. The rows of one trace follow each other, and the numbers of traces
-/// increase; they may leave gaps. Where there is a column `step` of whole numbers from 0, these increase within each trace.
-/// A file without rows has no traces. In Parquet, whole numbers may have any width, and coordinates may be floats or whole
-/// numbers: each is taken exactly. A pipe is read too, as CSV; devices are not.
+/// increase; they may leave gaps. Where there is a column `step` of whole numbers from 0, these increase within each
+/// trace. A file without rows has no traces. In Parquet, whole numbers may have any width, and coordinates may be
+/// floats or whole numbers: each is taken exactly. A pipe is read too, as CSV; devices are not.
 ///
 /// # Errors
 ///
@@ -75,8 +75,8 @@ impl TraceReader {
         Ok(TraceReader { path: path.into(), rows, gatherer: Gatherer::default(), ended: false })
     }
 
-    /// The next whole traces, at least one: at most `traces`, with at most `points` points together unless the first has
-    /// more by itself. `None` when there are no more, and after an error.
+    /// The next whole traces, at least one: at most `traces`, with at most `points` points together unless the first
+    /// has more by itself. `None` when there are no more, and after an error.
     ///
     /// Memory is bounded by the batch, its longest trace and some megabytes.
     ///

@@ -1,16 +1,17 @@
 //! Settling a trace: checking its steps against the walls, and deciding on which side it passes the wall ends that it
 //! touches.
 //!
-//! A trace may stand anywhere on a wall, pass exactly through a vertex, or slide along walls. It then counts as passing a
-//! hair off the walls, on the side that it comes from and goes on to; from an anchor on a solid's border, on the free
-//! side; where both sides would do, on the left. Settled traces need no further thought: their points carry their [`Hair`](crate::geometry::Hair).
+//! A trace may stand anywhere on a wall, pass exactly through a vertex, or slide along walls. It then counts as passing
+//! a hair off the walls, on the side that it comes from and goes on to; from an anchor on a solid's border, on the free
+//! side; where both sides would do, on the left. Settled traces need no further thought: their points carry their
+//! [`Hair`](crate::geometry::Hair).
 
 use std::ops::ControlFlow::Continue;
 
 use glam::DVec2;
 
 use super::pluck::pluck;
-use super::settled::Broken;
+use super::settled::{Broken, violation};
 use super::{SettledTrace, Trace, Violation, ViolationKind};
 use crate::geometry::{between, check_points, higher, lower, opposite, orient, same_side};
 use crate::scene::Model;
@@ -24,7 +25,8 @@ const STEPS_PER_LOOK: usize = 16;
 ///
 /// # Panics
 ///
-/// If the trace has no point or more than 2^31, or one that [`check_point`] refuses. What [`read_traces`] gives is sound.
+/// If the trace has no point or more than 2^31, or one that [`check_point`] refuses. What [`read_traces`] gives is
+/// sound.
 ///
 /// [`check_point`]: crate::geometry::check_point
 /// [`read_traces`]: super::read_traces
@@ -48,8 +50,8 @@ pub fn settle_owned(model: &Model, mut trace: Trace) -> SettledTrace {
     layout.settle(model, trace.id, points)
 }
 
-/// [`settle_owned`] for a trace of which it is known that neither a step nor the straight way from the anchor to the first
-/// point touches a wall, unless it leaves the wall's end at which the anchor stands: the walls are not looked at.
+/// [`settle_owned`] for a trace of which it is known that neither a step nor the straight way from the anchor to the
+/// first point touches a wall, unless it leaves the wall's end at which the anchor stands: the walls are not looked at.
 ///
 /// # Panics
 ///
@@ -179,17 +181,4 @@ impl Layout {
         }
         settled
     }
-}
-
-/// The violation of a step from `from` to `to`.
-pub(super) fn violation(
-    model: &Model,
-    trace: u64,
-    step: usize,
-    kind: ViolationKind,
-    wall: u32,
-    [from, to]: [DVec2; 2],
-) -> Violation {
-    let wall = wall as usize;
-    Violation { trace, step, kind, wall, ends: model.scene().ends(wall), from, to }
 }

@@ -7,8 +7,7 @@ use proptest::prelude::*;
 
 use super::corner::Corner;
 use super::pluck::pluck_stays;
-use super::settle::violation;
-use super::settled::Broken;
+use super::settled::{Broken, violation};
 use super::slide::Stay;
 use super::{SettledTrace, Trace, ViolationKind, settle, settle_owned};
 use crate::geometry::{between, opposite, orient, same_side};

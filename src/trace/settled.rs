@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use crate::geometry::{Hair, Shown, TracePoint, higher, lower};
+use crate::scene::Model;
 
 /// What a trace does that a rope among solid walls cannot follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,8 +61,8 @@ pub(super) struct Broken {
 }
 
 impl Broken {
-    /// Notes a violation. Keeps that of the earlier step and there that of the wall with the smaller number; of two kinds at
-    /// one wall the one found first.
+    /// Notes a violation. Keeps that of the earlier step and there that of the wall with the smaller number; of two
+    /// kinds at one wall the one found first.
     pub(super) fn note(&mut self, found: Violation) {
         if self.first.is_none_or(|v| (found.step, found.wall) < (v.step, v.wall)) {
             self.first = Some(found);
@@ -170,9 +171,9 @@ impl SettledTrace {
         self.bounds
     }
 
-    /// Whether every point is one of the trace's own and none stands on a vertex: the trace starts at the anchor and touches
-    /// nothing. Then every point ends a step, that of its own number unless [points were left out](Self::is_thinned), and none
-    /// has a hair.
+    /// Whether every point is one of the trace's own and none stands on a vertex: the trace starts at the anchor and
+    /// touches nothing. Then every point ends a step, that of its own number unless [points were left
+    /// out](Self::is_thinned), and none has a hair.
     #[inline]
     pub fn is_plain(&self) -> bool {
         self.added.is_empty() && self.hairs.is_empty()
@@ -227,14 +228,14 @@ impl SettledTrace {
         !self.coarse.used.is_empty()
     }
 
-    /// How many of the longer steps of a [coarsened](Self::coarsened) trace were walked point by point, as given, since they
-    /// would have touched a wall.
+    /// How many of the longer steps of a [coarsened](Self::coarsened) trace were walked point by point, as given, since
+    /// they would have touched a wall.
     pub fn jumps(&self) -> usize {
         self.coarse.jumps
     }
 
-    /// How many of the steps of a [coarsened](Self::coarsened) trace break the small update condition among the walls that it
-    /// was coarsened among.
+    /// How many of the steps of a [coarsened](Self::coarsened) trace break the small update condition among the walls
+    /// that it was coarsened among.
     pub fn crossings(&self) -> usize {
         self.coarse.crossings
     }
@@ -244,8 +245,8 @@ impl SettledTrace {
         self.broken.first.is_some() || self.coarse.crossings > 0
     }
 
-    /// Where the free end is after each step, step 0 being the move to the trace's first point. After steps that were left
-    /// out it still is where it was after the one before. O(steps), or O(1) where the points are just that.
+    /// Where the free end is after each step, step 0 being the move to the trace's first point. After steps that were
+    /// left out it still is where it was after the one before. O(steps), or O(1) where the points are just that.
     pub fn ends(&self) -> Cow<'_, [DVec2]> {
         if self.is_plain() && !self.is_thinned() {
             return Cow::Borrowed(&self.points);
@@ -261,8 +262,8 @@ impl SettledTrace {
         ends.into()
     }
 
-    /// The first step that breaks the small update condition, if one does: of the trace as it was given, among the walls as
-    /// they were.
+    /// The first step that breaks the small update condition, if one does: of the trace as it was given, among the
+    /// walls as they were.
     pub fn violation(&self) -> Option<&Violation> {
         self.broken.first.as_ref()
     }
@@ -271,4 +272,17 @@ impl SettledTrace {
     pub fn violations(&self) -> usize {
         self.broken.steps.len()
     }
+}
+
+/// The violation of a step from `from` to `to`.
+pub(super) fn violation(
+    model: &Model,
+    trace: u64,
+    step: usize,
+    kind: ViolationKind,
+    wall: u32,
+    [from, to]: [DVec2; 2],
+) -> Violation {
+    let wall = wall as usize;
+    Violation { trace, step, kind, wall, ends: model.scene().ends(wall), from, to }
 }

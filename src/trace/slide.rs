@@ -32,12 +32,14 @@ pub(super) fn outgoing(sides: &[Turn], i: usize) -> Turn {
 }
 
 /// Chooses on which side of the walls each slide of a run of corners goes: one that connects at every corner; of those,
-/// one that rounds no tip needlessly; of those, the one on the side that the trace comes from and goes on to; else the left.
+/// one that rounds no tip needlessly; of those, the one on the side that the trace comes from and goes on to; else the
+/// left.
 ///
 /// Where none connects at every corner, the trace breaks the rules where the longest start that does ends, and what
 /// comes after is chosen anew.
 pub(super) fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&Stay>) -> Vec<Turn> {
-    // More than the two sides on which a slide can be wrong: a trace that turns back on a wall's end winds round nothing.
+    // More than the two sides on which a slide can be wrong: a trace that turns back on a wall's end winds round
+    // nothing.
     const TIP: u64 = 3;
     const BOTH: [Turn; 2] = [Turn::Left, Turn::Right];
     // More than all tips of a run together, since a trace has fewer than 2^31 points; and so many of these have a sum.
@@ -72,8 +74,8 @@ pub(super) fn choose_sides(run: &[Stay], before: Option<&Stay>, after: Option<&S
     let turn = |i: usize, side: Turn, next: Turn| {
         cost_of(i, corner(i).way(run[i - 1].at, side.reversed()), corner(i).way(run[i + 1].at, next))
     };
-    // At which corners the trace breaks the rules, whatever the sides. `open` are the sides of the last slide to which it can
-    // have come since the last such corner.
+    // At which corners the trace breaks the rules, whatever the sides. `open` are the sides of the last slide to which
+    // it can have come since the last such corner.
     let mut broken = vec![false; slides + 1];
     let mut open = BOTH.map(|side| enter(side) < SLIPS);
     for (i, broken) in broken.iter_mut().enumerate() {

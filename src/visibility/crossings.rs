@@ -11,8 +11,8 @@ use crate::scene::Model;
 /// How many pairs of walls are looked at for each wall, on average, before the rest is left as it is.
 const LOOKS: usize = 64;
 
-/// The points, none of them a vertex, in which two of `walls` cross and that lie exactly on both: split there, the walls
-/// can be triangulated. Each once; at most 16 a wall, so that scenes of many crossings stay small.
+/// The points, none of them a vertex, in which two of `walls` cross and that lie exactly on both: split there, the
+/// walls can be triangulated. Each once; at most 16 a wall, so that scenes of many crossings stay small.
 pub(super) fn crossings(model: &Model, walls: &[u32]) -> Vec<DVec2> {
     // Walls that lie on each other, or have all the same place, would be looked at in all their pairs.
     let (mut looks, room) = (LOOKS * walls.len(), 16 * walls.len());

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::mesh::{CLOSED, HalfEdge, Mesh, next};
+use super::mesh::{CLOSED, HalfEdge, Mesh, MeshVertex, next};
 use crate::geometry::orient;
 
 /// Memory that looks share, one after the other.
@@ -14,7 +14,7 @@ pub struct Scratch {
     /// The views of the current look, those already looked at included, and room for two more.
     views: Vec<View>,
     /// The vertices seen, and room for one more.
-    seen: Vec<u32>,
+    seen: Vec<MeshVertex>,
 }
 
 impl Scratch {
@@ -35,8 +35,14 @@ impl Scratch {
             self.views.resize(2 * views + 64, View::default());
         }
         if seen + 1 > self.seen.len() {
-            self.seen.resize(2 * seen + 64, 0);
+            self.seen.resize(2 * seen + 64, MeshVertex::default());
         }
+    }
+
+    /// What the last look has seen, if that is so much.
+    #[inline]
+    pub(super) fn seen(&self, listed: usize) -> &[MeshVertex] {
+        &self.seen[..listed]
     }
 }
 
@@ -46,8 +52,8 @@ struct View {
     /// The edge as seen from inside the triangle to be looked at.
     edge: u32,
     /// The vertices that bound the view.
-    right: u32,
-    left: u32,
+    right: MeshVertex,
+    left: MeshVertex,
     /// Outside which lines they lie, in the lowest two bytes, and the edge's right and left end, in the highest.
     outside: [u8; 4],
 }
@@ -62,25 +68,25 @@ impl View {
 }
 
 impl Mesh {
-    /// Writes all vertices that are visible from mesh vertex `o`, in the closed sense, into `seen`, the model's each once, and
-    /// returns how many triangles were looked at; `None` if it gave up because they were more than `most`.
+    /// Leaves all vertices that are visible from `o`, in the closed sense, in `scratch`, the model's each once; returns
+    /// how many triangles were looked at, and [how many vertices were seen](Scratch::seen). `None` if it gave up
+    /// because the triangles were more than `most`.
     ///
     /// A view is an open cone between two vertices seen before; what lies in it or on its bounding rays is listed. So a
     /// vertex that a line of sight grazes is listed, and what can be left out lies exactly behind another.
     ///
-    /// Only vertices are listed that lie inside all lines of some kind: `outside` has a bit for each line outside which a
-    /// point lies. `o` must lie inside all. Then what lies outside a line stays there when it is moved straight away from
-    /// `o`, and so does all that lies between two such points: no view is followed whose two bounding vertices, or whose
-    /// edge's two ends, lie outside one line.
+    /// Only vertices are listed that lie inside all lines of some kind: `outside` has a bit for each line outside which
+    /// a point lies. `o` must lie inside all. Then what lies outside a line stays there when it is moved straight away
+    /// from `o`, and so does all that lies between two such points: no view is followed whose two bounding vertices, or
+    /// whose edge's two ends, lie outside one line.
     #[inline]
     pub(super) fn expand(
         &self,
-        o: u32,
+        o: MeshVertex,
         scratch: &mut Scratch,
-        seen: &mut Vec<u32>,
         outside: impl Fn(DVec2) -> u8,
         most: usize,
-    ) -> Option<usize> {
+    ) -> Option<[usize; 2]> {
         scratch.start(self.len());
         let at = self.at(o);
         let (mut views, mut listed) = (0, 0);
@@ -100,11 +106,12 @@ impl Mesh {
             scratch.views[views] = view;
             views += usize::from(view.is_open());
         }
-        self.follow(at, self.fan(o).len(), [views, listed], scratch, seen, outside, most)
+        self.follow(at, self.fan(o).len(), [views, listed], scratch, outside, most)
     }
 
-    /// The same for a point inside a triangle or on its border, but not on a vertex; nothing bounds the look.
-    pub(super) fn expand_from(&self, at: DVec2, triangle: u32, scratch: &mut Scratch, seen: &mut Vec<u32>) {
+    /// The same for a point inside a triangle or on its border, but not on a vertex; nothing bounds the look. Returns
+    /// how many vertices were seen.
+    pub(super) fn expand_from(&self, at: DVec2, triangle: u32, scratch: &mut Scratch) -> usize {
         scratch.start(self.len());
         let (mut views, mut listed) = (0, 0);
         scratch.make_room(3, 3);
@@ -114,12 +121,13 @@ impl Mesh {
             scratch.views[views] = View { edge: self.edge(edge).twin, right, left, outside: [0; 4] };
             views += usize::from(scratch.views[views].is_open());
         }
-        self.follow(at, 1, [views, listed], scratch, seen, |_| 0, usize::MAX);
+        let [_, listed] = self.follow(at, 1, [views, listed], scratch, |_| 0, usize::MAX).expect("nothing bounds it");
+        listed
     }
 
     /// The triangles that meet what is visible from mesh vertex `o`, each once, ascending.
-    pub(super) fn triangles_seen(&self, o: u32, scratch: &mut Scratch) -> Vec<u32> {
-        let looked_at = self.expand(o, scratch, &mut Vec::new(), |_| 0, usize::MAX).unwrap_or(0);
+    pub(super) fn triangles_seen(&self, o: MeshVertex, scratch: &mut Scratch) -> Vec<u32> {
+        let [looked_at, _] = self.expand(o, scratch, |_| 0, usize::MAX).expect("nothing bounds it");
         let followed = looked_at - self.fan(o).len();
         let edges = self.fan(o).iter().copied().chain(scratch.views[..followed].iter().map(|view| view.edge));
         let mut triangles: Vec<u32> = edges.map(|edge| edge / 4).collect();
@@ -128,20 +136,18 @@ impl Mesh {
         triangles
     }
 
-    /// Follows the first `views` views of `scratch`, of which `listed` vertices were seen and for which `before` triangles
-    /// were looked at.
+    /// Follows the first `views` views of `scratch`, of which `listed` vertices were seen and for which `before`
+    /// triangles were looked at.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "they are what its callers share")]
     fn follow(
         &self,
         at: DVec2,
         before: usize,
         [mut views, mut listed]: [usize; 2],
         scratch: &mut Scratch,
-        seen: &mut Vec<u32>,
         outside: impl Fn(DVec2) -> u8,
         most: usize,
-    ) -> Option<usize> {
+    ) -> Option<[usize; 2]> {
         let mut done = 0;
         while done < views {
             if before + done >= most {
@@ -170,14 +176,13 @@ impl Mesh {
             scratch.views[views] = view;
             views += usize::from((from_left < 0.0) & view.is_open());
         }
-        seen.extend_from_slice(&scratch.seen[..listed]);
-        Some(before + done)
+        Some([before + done, listed])
     }
 
     /// Writes `vertex` down as the one behind the `listed`, and returns 1 if it is to be kept: seen, and not before.
     #[inline]
-    fn see(&self, vertex: u32, is_seen: bool, listed: usize, scratch: &mut Scratch) -> usize {
-        let last = &mut scratch.seen_in[vertex as usize];
+    fn see(&self, vertex: MeshVertex, is_seen: bool, listed: usize, scratch: &mut Scratch) -> usize {
+        let last = &mut scratch.seen_in[vertex.index()];
         let is_new = is_seen & (*last != scratch.look);
         *last = if is_seen { scratch.look } else { *last };
         scratch.seen[listed] = vertex;

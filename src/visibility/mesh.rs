@@ -5,21 +5,36 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
 use super::crossings::crossings;
 use crate::geometry::{between, higher, lower, orient};
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 
-/// Into how many pieces walls may be cut by vertices that lie on them, on average, before the rest stays out, which is safe:
-/// thousands of walls that lie on each other would be cut into millions.
+/// Into how many pieces walls may be cut by vertices that lie on them, on average, before the rest stays out, which is
+/// safe: thousands of walls that lie on each other would be cut into millions.
 const PIECES: usize = 16;
 
 /// Marks an edge through which one cannot see: a wall, or the mesh's outer border.
 pub(super) const CLOSED: u32 = u32::MAX;
+
+/// A vertex of the mesh, by its number there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+#[repr(transparent)]
+pub(super) struct MeshVertex(u32);
+
+impl MeshVertex {
+    /// That of a pivot that is not in the mesh.
+    const ABSENT: MeshVertex = MeshVertex(u32::MAX);
+
+    #[inline]
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
 
 /// An edge of a triangle as seen from inside it. Half-edges 4t, 4t + 1 and 4t + 2 are those of triangle t,
 /// counter-clockwise; 4t + 3 is none.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HalfEdge {
     /// The vertex at which it starts.
-    pub origin: u32,
+    pub origin: MeshVertex,
     /// The same edge as seen from the triangle on its other side, or [`CLOSED`].
     pub twin: u32,
 }
@@ -33,26 +48,28 @@ struct Triangle([HalfEdge; 4]);
 /// numbered along a curve that fills the plane, and so are its triangles: what lies near each other does so in memory.
 pub(super) struct Mesh {
     vertices: Vec<DVec2>,
-    walls: Vec<[u32; 2]>,
+    walls: Vec<[MeshVertex; 2]>,
     /// The walls along which not every edge is closed.
     loose: Vec<u32>,
-    /// The model's number of each vertex, or [`ABSENT`].
+    /// The model's number of each vertex, or [`NAMELESS`].
     names: Vec<u32>,
-    /// The vertex of each pivot, the model's vertices and then the anchor, or [`ABSENT`].
-    pivots: Vec<u32>,
+    /// The vertex of each pivot, or [`MeshVertex::ABSENT`].
+    pivots: Vec<MeshVertex>,
+    anchor: Pivot,
     triangles: Vec<Triangle>,
     /// The half-edges that start at each vertex, in triangles in which looks start, and where each vertex's begin.
     fans: Vec<u32>,
     first_fan: Vec<u32>,
 }
 
-/// The name of a vertex that is none of the model's, and the vertex of a pivot that is not in the mesh.
-pub(super) const ABSENT: u32 = u32::MAX;
+/// The name of a vertex that is none of the model's.
+const NAMELESS: u32 = u32::MAX;
 
 type Cdt = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 impl Mesh {
-    /// The part that looks inside the box of `reach` can see. `None` where the triangulation cannot take the coordinates.
+    /// The part that looks inside the box of `reach` can see. `None` where the triangulation cannot take the
+    /// coordinates.
     pub(super) fn new(model: &Model, (low, high): (DVec2, DVec2)) -> Option<Mesh> {
         let real = model.vertices().len();
         let is_near = |&wall: &u32| {
@@ -64,38 +81,38 @@ impl Mesh {
 
         let mut places = Vec::new();
         let mut names = Vec::new();
-        let mut pivots = vec![ABSENT; real + 1];
+        let mut pivots = vec![MeshVertex::ABSENT; real + 1];
         for v in ends().flatten() {
-            if pivots[v as usize] == ABSENT {
-                pivots[v as usize] = 0;
+            if pivots[v as usize] == MeshVertex::ABSENT {
+                pivots[v as usize] = MeshVertex(0);
                 places.push(model.vertices()[v as usize]);
                 names.push(v);
             }
         }
         let anchor = model.vertex_at(model.anchor());
-        if anchor.is_none_or(|v| pivots[v as usize] == ABSENT) {
+        if anchor.is_none_or(|v| pivots[v as usize] == MeshVertex::ABSENT) {
             places.push(model.anchor());
             names.push(anchor.unwrap_or(real as u32));
         }
         places.extend(crossings(model, &near));
         let bounds = places.iter().fold((places[0], places[0]), |(l, h), &p| (lower(l, p), higher(h, p)));
         places.extend(corners(bounds));
-        names.resize(places.len(), ABSENT);
+        names.resize(places.len(), NAMELESS);
 
         let order = along_curve(&places, bounds);
         let vertices: Vec<DVec2> = order.iter().map(|&place| places[place as usize]).collect();
         let mut names: Vec<u32> = order.iter().map(|&place| names[place as usize]).collect();
-        for (here, name) in (0..).zip(&mut names).filter(|(_, name)| **name != ABSENT) {
+        for (here, name) in (0..).map(MeshVertex).zip(&mut names).filter(|(_, name)| **name != NAMELESS) {
             pivots[*name as usize] = here;
             if *name == real as u32 {
-                *name = ABSENT;
+                *name = NAMELESS;
             }
         }
         if let Some(anchor) = anchor {
             pivots[real] = pivots[anchor as usize];
         }
 
-        let walls: Vec<[u32; 2]> = ends().map(|wall| wall.map(|v| pivots[v as usize])).collect();
+        let walls: Vec<[MeshVertex; 2]> = ends().map(|wall| wall.map(|v| pivots[v as usize])).collect();
         let mut cdt = triangulate(&vertices)?;
         let (mut added, mut room) = (0, PIECES * walls.len());
         while added < walls.len() && room > 0 {
@@ -104,8 +121,17 @@ impl Mesh {
             room = room.saturating_sub(cdt.try_add_constraint(u, v).len());
             added += 1;
         }
-        let mut mesh =
-            Mesh { vertices, walls, loose: vec![], names, pivots, triangles: vec![], fans: vec![], first_fan: vec![] };
+        let mut mesh = Mesh {
+            vertices,
+            walls,
+            loose: vec![],
+            names,
+            pivots,
+            anchor: model.pivot(None),
+            triangles: vec![],
+            fans: vec![],
+            first_fan: vec![],
+        };
         mesh.take_triangles(&cdt);
         mesh.close(&cdt, added);
         mesh.leave_solids(model);
@@ -115,18 +141,19 @@ impl Mesh {
     fn take_triangles(&mut self, cdt: &Cdt) {
         let n = self.vertices.len();
         // Of each of the library's triangles: its vertices, its edges, and the same edges as seen from outside.
-        let faces: Vec<[[u32; 3]; 3]> = cdt
+        let faces: Vec<([MeshVertex; 3], [[u32; 3]; 2])> = cdt
             .inner_faces()
             .map(|face| {
-                let edges =
-                    face.adjacent_edges().map(|e| [e.from().index() as u32, e.index() as u32, e.rev().index() as u32]);
-                [0, 1, 2].map(|i| edges.map(|e| e[i]))
+                let edges = face.adjacent_edges();
+                let of = |number: &dyn Fn(_) -> usize| edges.map(|edge| number(edge) as u32);
+                let [inner, outer] = [of(&|edge| edge.index()), of(&|edge| edge.rev().index())];
+                (of(&|edge| edge.from().index()).map(MeshVertex), [inner, outer])
             })
             .collect();
         // They are numbered in the order of their lowest vertices.
-        let lowest = |vertices: &[u32; 3]| *vertices.iter().min().expect("a triangle has vertices") as usize;
+        let lowest = |vertices: &[MeshVertex; 3]| vertices.iter().min().expect("a triangle has vertices").index();
         let mut next = vec![0; n + 1];
-        for [vertices, ..] in &faces {
+        for (vertices, _) in &faces {
             next[lowest(vertices) + 1] += 4;
         }
         for v in 0..n {
@@ -134,14 +161,14 @@ impl Mesh {
         }
         // The number here of each of the library's edges that has a triangle on its left.
         let mut numbers = vec![CLOSED; cdt.num_directed_edges()];
-        self.triangles = vec![Triangle([HalfEdge { origin: 0, twin: CLOSED }; 4]); faces.len()];
+        self.triangles = vec![Triangle([HalfEdge { origin: MeshVertex(0), twin: CLOSED }; 4]); faces.len()];
         self.first_fan = vec![0; n + 1];
-        for [vertices, inner, outer] in &faces {
+        for (vertices, [inner, outer]) in &faces {
             let first = &mut next[lowest(vertices)];
             for i in 0..3 {
                 // Replaced below by the number of the same edge.
                 self.triangles[*first as usize / 4].0[i] = HalfEdge { origin: vertices[i], twin: outer[i] };
-                self.first_fan[vertices[i] as usize + 1] += 1;
+                self.first_fan[vertices[i].index() + 1] += 1;
                 numbers[inner[i] as usize] = *first + i as u32;
             }
             *first += 4;
@@ -158,15 +185,15 @@ impl Mesh {
         let mut next = self.first_fan.clone();
         for (Triangle(triangle), first) in self.triangles.iter().zip((0..).step_by(4)) {
             for (edge, number) in triangle[..3].iter().zip(first..) {
-                let slot = &mut next[edge.origin as usize];
+                let slot = &mut next[edge.origin.index()];
                 self.fans[*slot as usize] = number;
                 *slot += 1;
             }
         }
     }
 
-    /// Closes the edges that lie on the first `walls` walls. Only those that are found by following a wall from vertex to vertex are closed,
-    /// so whatever else the triangulation holds as constraints hides nothing.
+    /// Closes the edges that lie on the first `walls` walls. Only those that are found by following a wall from vertex
+    /// to vertex are closed, so whatever else the triangulation holds as constraints hides nothing.
     fn close(&mut self, cdt: &Cdt, walls: usize) {
         for wall in 0..walls {
             let [u, v] = self.walls[wall];
@@ -174,7 +201,7 @@ impl Mesh {
             while here != v {
                 let at = self.at(here);
                 let along = cdt.vertex(handle(here)).out_edges().find(|edge| {
-                    let to = edge.to().fix().index() as u32;
+                    let to = MeshVertex(edge.to().fix().index() as u32);
                     let p = self.at(to);
                     edge.is_constraint_edge() && (to == v || orient(at, end, p) == 0.0 && between(at, end, p))
                 });
@@ -182,7 +209,7 @@ impl Mesh {
                     self.loose.push(wall as u32);
                     break;
                 };
-                let next = edge.to().fix().index() as u32;
+                let next = MeshVertex(edge.to().fix().index() as u32);
                 self.close_edge(here, next);
                 here = next;
             }
@@ -190,9 +217,9 @@ impl Mesh {
         self.loose.extend(walls as u32..self.walls.len() as u32);
     }
 
-    fn close_edge(&mut self, u: u32, v: u32) {
+    fn close_edge(&mut self, u: MeshVertex, v: MeshVertex) {
         for (from, to) in [(u, v), (v, u)] {
-            let fan = self.first_fan[from as usize] as usize..self.first_fan[from as usize + 1] as usize;
+            let fan = self.first_fan[from.index()] as usize..self.first_fan[from.index() + 1] as usize;
             for &edge in &self.fans[fan] {
                 if self.edge(next(edge)).origin == to {
                     self.triangles[edge as usize / 4].0[edge as usize % 4].twin = CLOSED;
@@ -201,7 +228,7 @@ impl Mesh {
         }
     }
 
-    /// Leaves the triangles of which it does not hold out of all fans, so that looks never start into them.
+    /// Leaves all triangles but those that `is_kept` marks out of all fans, so that looks never start into the others.
     pub(super) fn start_only_in(&mut self, is_kept: &[bool]) {
         self.keep_spokes(|_, triangle| is_kept[triangle as usize]);
     }
@@ -209,7 +236,7 @@ impl Mesh {
     /// Leaves out of the anchor's fan what lies inside of a solid on whose border it stands.
     fn leave_solids(&mut self, model: &Model) {
         let Some((sectors, solid)) = model.border() else { return };
-        let anchor = self.pivots[self.pivots.len() - 1];
+        let anchor = self.pivots[self.anchor.index()];
         let fan: Vec<u32> = self.fan(anchor).to_vec();
         // A triangle lies to the left of the half-edge that starts at the anchor.
         let is_solid = |&&spoke: &&u32| match sectors.find(self.at(self.edge(next(spoke)).origin)) {
@@ -219,15 +246,16 @@ impl Mesh {
         self.keep_spokes(|vertex, triangle| vertex != anchor || !left_out.contains(&triangle));
     }
 
-    /// Leaves half-edges out of all fans but those of which it holds: of the vertex at which they start and of their triangle.
-    fn keep_spokes(&mut self, is_kept: impl Fn(u32, u32) -> bool) {
+    /// Leaves half-edges out of all fans but those of which `is_kept` holds: it is given the vertex at which a
+    /// half-edge starts, and its triangle.
+    fn keep_spokes(&mut self, is_kept: impl Fn(MeshVertex, u32) -> bool) {
         let (mut kept, mut first) = (0, 0);
         for v in 0..self.vertices.len() {
             let end = self.first_fan[v + 1] as usize;
             self.first_fan[v] = kept as u32;
             for i in first..end {
                 self.fans[kept] = self.fans[i];
-                kept += usize::from(is_kept(v as u32, self.fans[i] / 4));
+                kept += usize::from(is_kept(MeshVertex(v as u32), self.fans[i] / 4));
             }
             first = end;
         }
@@ -236,40 +264,45 @@ impl Mesh {
     }
 
     /// Makes a vertex one that is none of the model's, as far as looks tell.
-    pub(super) fn forget_name(&mut self, vertex: u32) {
-        self.names[vertex as usize] = ABSENT;
+    pub(super) fn forget_name(&mut self, vertex: MeshVertex) {
+        self.names[vertex.index()] = NAMELESS;
     }
 
-    pub(super) fn at(&self, vertex: u32) -> DVec2 {
-        self.vertices[vertex as usize]
+    #[inline]
+    pub(super) fn at(&self, vertex: MeshVertex) -> DVec2 {
+        self.vertices[vertex.index()]
     }
 
-    /// The vertex of a pivot: a vertex of the model, or their number for the anchor; `None` if it is
-    /// not in the mesh.
-    pub(super) fn pivot(&self, pivot: u32) -> Option<u32> {
-        Some(self.pivots[pivot as usize]).filter(|&v| v != ABSENT)
+    /// The vertex of a pivot; `None` if it is not in the mesh.
+    pub(super) fn vertex(&self, pivot: Pivot) -> Option<MeshVertex> {
+        Some(self.pivots[pivot.index()]).filter(|&v| v != MeshVertex::ABSENT)
     }
 
-    /// The number of the anchor as a pivot, which is in the mesh.
-    pub(super) fn anchor(&self) -> u32 {
-        self.pivots.len() as u32 - 1
+    /// The anchor, which is in the mesh.
+    pub(super) fn anchor(&self) -> Pivot {
+        self.anchor
     }
 
     /// The walls in the mesh.
-    pub(super) fn walls(&self) -> &[[u32; 2]] {
+    pub(super) fn walls(&self) -> &[[MeshVertex; 2]] {
         &self.walls
     }
 
-    /// The ends of the walls along which one can see, or walk, from one side to the other somewhere: they cross others at
-    /// points that no f64 names, or there were too many walls on each other.
+    /// The ends of the walls along which one can see, or walk, from one side to the other somewhere: they cross others
+    /// at points that no f64 names, or there were too many walls on each other.
     pub(super) fn loose(&self) -> impl Iterator<Item = [DVec2; 2]> {
         self.loose.iter().map(|&wall| self.walls[wall as usize].map(|v| self.at(v)))
     }
 
-    /// The model's number of a vertex, or [`ABSENT`].
+    /// The model's number of a vertex; `None` if it is none of the model's.
     #[inline]
-    pub(super) fn name(&self, vertex: u32) -> u32 {
-        self.names[vertex as usize]
+    pub(super) fn name(&self, vertex: MeshVertex) -> Option<u32> {
+        Some(self.names[vertex.index()]).filter(|&name| name != NAMELESS)
+    }
+
+    /// All vertices.
+    pub(super) fn vertices(&self) -> impl Iterator<Item = MeshVertex> + use<> {
+        (0..self.len() as u32).map(MeshVertex)
     }
 
     /// How many vertices it has.
@@ -295,8 +328,8 @@ impl Mesh {
     }
 
     /// The half-edges that start at `vertex`, one in each triangle round it in which looks start.
-    pub(super) fn fan(&self, vertex: u32) -> &[u32] {
-        &self.fans[self.first_fan[vertex as usize] as usize..self.first_fan[vertex as usize + 1] as usize]
+    pub(super) fn fan(&self, vertex: MeshVertex) -> &[u32] {
+        &self.fans[self.first_fan[vertex.index()] as usize..self.first_fan[vertex.index() + 1] as usize]
     }
 }
 
@@ -306,8 +339,8 @@ pub(super) fn next(edge: u32) -> u32 {
     if edge % 4 == 2 { edge - 2 } else { edge + 1 }
 }
 
-/// The numbers of `points` in the order in which Morton's curve through the box of `bounds` passes them (Morton, "A computer
-/// oriented geodetic data base", 1966).
+/// The numbers of `points` in the order in which Morton's curve through the box of `bounds` passes them (Morton, "A
+/// computer oriented geodetic data base", 1966).
 fn along_curve(points: &[DVec2], (low, high): (DVec2, DVec2)) -> Vec<u32> {
     let scale = f64::from(u16::MAX) / (high - low).max_element();
     let key = |p: &DVec2| {
@@ -328,8 +361,8 @@ fn spread(bits: u16) -> u32 {
         .fold(u32::from(bits), |bits, (by, mask)| (bits | bits << by) & mask)
 }
 
-fn handle(vertex: u32) -> spade::handles::FixedVertexHandle {
-    spade::handles::FixedVertexHandle::from_index(vertex as usize)
+fn handle(vertex: MeshVertex) -> spade::handles::FixedVertexHandle {
+    spade::handles::FixedVertexHandle::from_index(vertex.index())
 }
 
 /// The corners of a square far outside, so that every vertex has triangles all round it.

@@ -4,33 +4,36 @@ use glam::DVec2;
 
 use rstar::{AABB, RTree, primitives::Rectangle};
 
-use super::mesh::{ABSENT, CLOSED, next};
+use super::mesh::{CLOSED, next};
 use super::{Scratch, Visibility};
 use crate::geometry::{higher, lower, orient};
+use crate::scene::Pivot;
 
 /// Which triangles can be reached from a point without crossing a wall, by their numbers.
 pub(crate) struct Reach {
     /// Those that can; where walls cross at a point that no f64 names, some may be missing.
     pub(crate) surely: Vec<bool>,
-    /// None of those that cannot is missing here; where walls cross at such a point, some that cannot may be among them.
+    /// None of those that cannot is missing here; where walls cross at such a point, some that cannot may be among
+    /// them.
     pub(crate) perhaps: Vec<bool>,
 }
 
 impl Visibility {
-    /// The triangles that can be reached from `pivot` without crossing a wall, in no particular order; none if it lies out of
-    /// reach. Where walls cross at a point that no f64 names, some that cannot be reached may be among them. O(triangles).
-    pub(crate) fn reached(&self, pivot: u32) -> Vec<u32> {
+    /// The triangles that can be reached from `pivot` without crossing a wall, in no particular order; none if it lies
+    /// out of reach. Where walls cross at a point that no f64 names, some that cannot be reached may be among them.
+    /// O(triangles).
+    pub(crate) fn reached(&self, pivot: Pivot) -> Vec<u32> {
         self.reached_through(pivot, |_| true)
     }
 
-    /// The same through edges only for whose number it holds.
-    pub(super) fn reached_through(&self, pivot: u32, is_passed: impl Fn(u32) -> bool) -> Vec<u32> {
-        let Some(o) = self.mesh.pivot(pivot) else { return Vec::new() };
+    /// The triangles that can be reached from `pivot` through those edges alone for whose numbers `is_passed` holds.
+    pub(super) fn reached_through(&self, pivot: Pivot, is_passed: impl Fn(u32) -> bool) -> Vec<u32> {
+        let Some(o) = self.mesh.vertex(pivot) else { return Vec::new() };
         self.flood(self.mesh.fan(o).iter().map(|edge| edge / 4).collect(), is_passed)
     }
 
-    /// What can be reached from `at`, which lies in no wall, between its ends; from a wall's end, that is all round it. The
-    /// looks of this kind need the whole mesh. O(triangles log loose walls).
+    /// What can be reached from `at`, which lies in no wall, between its ends; from a wall's end, that is all round it.
+    /// The looks of this kind need the whole mesh. O(triangles log loose walls).
     pub(crate) fn reach(&self, at: DVec2) -> Reach {
         let is_around = |&triangle: &u32| {
             let [p, q, r] = self.triangle(triangle);
@@ -56,8 +59,8 @@ impl Visibility {
         Reach { surely: marked(surely), perhaps: marked(self.flood(around, |_| true)) }
     }
 
-    /// `triangles`, and all that are reached from them without crossing a wall, through edges only for whose number `is_passed`
-    /// holds.
+    /// `triangles`, and all that are reached from them without crossing a wall, through edges only for whose number
+    /// `is_passed` holds.
     fn flood(&self, mut triangles: Vec<u32>, is_passed: impl Fn(u32) -> bool) -> Vec<u32> {
         let mut is_reached = vec![false; self.mesh.triangles()];
         for &triangle in &triangles {
@@ -77,10 +80,11 @@ impl Visibility {
         triangles
     }
 
-    /// The triangles left and right of the wall from vertex `from` to vertex `to`; `None` if it is not one edge of the mesh,
-    /// or not closed. O(triangles round `from`).
+    /// The triangles left and right of the wall from vertex `from` to vertex `to`; `None` if it is not one edge of the
+    /// mesh, or not closed. O(triangles round `from`).
     pub(crate) fn beside(&self, from: u32, to: u32) -> Option<[u32; 2]> {
-        let (from, to) = (self.mesh.pivot(from)?, self.mesh.pivot(to)?);
+        let [from, to] = [from, to].map(|v| self.mesh.vertex(Pivot::at_vertex(v)));
+        let (from, to) = (from?, to?);
         let fan = self.mesh.fan(from).iter().copied();
         let left = fan.clone().find(|&edge| self.mesh.edge(next(edge)).origin == to)?;
         let right = fan.clone().find(|&edge| self.mesh.edge(next(next(edge))).origin == to)?;
@@ -88,8 +92,8 @@ impl Visibility {
     }
 
     /// The triangles that meet what is visible from `pivot`, each once, ascending; none if it lies out of reach.
-    pub(crate) fn seen(&self, pivot: u32) -> Vec<u32> {
-        let o = self.mesh.pivot(pivot);
+    pub(crate) fn seen(&self, pivot: Pivot) -> Vec<u32> {
+        let o = self.mesh.vertex(pivot);
         o.map_or(Vec::new(), |o| self.mesh.triangles_seen(o, &mut Scratch::default()))
     }
 
@@ -98,14 +102,11 @@ impl Visibility {
         [0, 1, 2].map(|i| self.mesh.at(self.mesh.edge(4 * triangle + i).origin))
     }
 
-    /// What [`look`](Self::look) writes for a pivot, from a point inside a triangle or on its border, but not on a corner and
-    /// on no wall.
+    /// What [`look`](Self::look) writes for a pivot, from a point inside a triangle or on its border, but not on a
+    /// corner and on no wall.
     pub(crate) fn look_from(&self, at: DVec2, triangle: u32, scratch: &mut Scratch, seen: &mut Vec<u32>) {
         seen.clear();
-        self.mesh.expand_from(at, triangle, scratch, seen);
-        seen.retain_mut(|v| {
-            let name = self.mesh.name(*v);
-            name != ABSENT && self.is_tangent(at, std::mem::replace(v, name))
-        });
+        let listed = self.mesh.expand_from(at, triangle, scratch);
+        self.name_tangent(at, scratch.seen(listed), seen);
     }
 }

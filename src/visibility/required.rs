@@ -3,22 +3,23 @@
 use glam::DVec2;
 
 use super::Visibility;
-use super::mesh::{ABSENT, CLOSED, next};
+use super::mesh::{CLOSED, MeshVertex, next};
 use crate::geometry::{higher, lower, orient};
 
 impl Visibility {
-    /// Leaves out of all looks what no rope from the anchor meets while its free end keeps to the rules within reach: what
-    /// lies on the other side of walls that cannot be passed, and vertices that remain on this side but not as places where
-    /// a rope can turn, such as the inner corners of rooms.
+    /// Leaves out of all looks what no rope from the anchor meets while its free end keeps to the rules within reach:
+    /// what lies on the other side of walls that cannot be passed, and vertices that remain on this side but not as
+    /// places where a rope can turn, such as the inner corners of rooms.
     ///
-    /// Just before the rope's last leg passes a contact it is free of walls, and it turns about the pivot. So it has swept
-    /// the open half disk about the contact, however small, on the side from which it comes: no wall lies in it, and the
-    /// free end has come that way. What is required is therefore each vertex with a sector between two walls that spans at
-    /// least half a turn and can be reached from the anchor. Exactly half a turn is enough: contacts passed straight count.
+    /// Just before the rope's last leg passes a contact it is free of walls, and it turns about the pivot. So it has
+    /// swept the open half disk about the contact, however small, on the side from which it comes: no wall lies in it,
+    /// and the free end has come that way. What is required is therefore each vertex with a sector between two walls
+    /// that spans at least half a turn and can be reached from the anchor. Exactly half a turn is enough: contacts
+    /// passed straight count.
     ///
     /// Walls that are not in the mesh, because they are out of reach or cross others at a point that no f64 names, make
-    /// sectors wider and let more be reached: a vertex too many may be kept, never one too few. Where the reach is known, free
-    /// ends go through edges of triangles within it only, and no contact lies outside. O(triangles).
+    /// sectors wider and let more be reached: a vertex too many may be kept, never one too few. Where the reach is
+    /// known, free ends go through edges of triangles within it only, and no contact lies outside. O(triangles).
     #[must_use]
     pub fn only_required(mut self) -> Self {
         let mut is_reached = vec![false; self.mesh.triangles()];
@@ -27,7 +28,7 @@ impl Visibility {
             is_reached[triangle as usize] = true;
         }
         self.mesh.start_only_in(&is_reached);
-        for v in 0..self.mesh.len() as u32 {
+        for v in self.mesh.vertices() {
             let at = self.mesh.at(v);
             if !self.is_within_reach([at, at]) || !self.has_room(v) {
                 self.mesh.forget_name(v);
@@ -38,8 +39,7 @@ impl Visibility {
 
     /// The model's vertices that looks can list, ascending: those that are not left out. O(n log n).
     pub fn listed(&self) -> Vec<u32> {
-        let names = (0..self.mesh.len() as u32).map(|v| self.mesh.name(v));
-        let mut listed: Vec<u32> = names.filter(|&name| name != ABSENT).collect();
+        let mut listed: Vec<u32> = self.mesh.vertices().filter_map(|v| self.mesh.name(v)).collect();
         listed.sort_unstable();
         listed
     }
@@ -50,9 +50,9 @@ impl Visibility {
         self.reach.is_none_or(meets)
     }
 
-    /// Whether a sector at vertex `v` of the mesh, whose fan holds the triangles that are reached and no others, spans at least
-    /// half a turn.
-    fn has_room(&self, v: u32) -> bool {
+    /// Whether a sector at vertex `v` of the mesh, whose fan holds the triangles that are reached and no others, spans
+    /// at least half a turn.
+    fn has_room(&self, v: MeshVertex) -> bool {
         let fan = self.mesh.fan(v);
         let begins_sector = |spoke: &&u32| self.mesh.edge(**spoke).twin == CLOSED;
         let is_wide = |&spoke: &u32| {
@@ -67,7 +67,7 @@ impl Visibility {
     }
 
     /// The far end of the wall that ends the sector begun by `spoke`, which is a wall.
-    fn end_of_sector(&self, mut spoke: u32) -> u32 {
+    fn end_of_sector(&self, mut spoke: u32) -> MeshVertex {
         loop {
             let last = self.mesh.edge(next(next(spoke)));
             if last.twin == CLOSED {

@@ -119,7 +119,7 @@ fn overflowing_queries_are_evaluated_exactly() {
     let lists = Lists::new(model.clone());
     let (simd, mut found) = (Simd::detected(), vec![]);
     let query = Query::leg(lists.frame(), model.anchor(), points[1], points[2]);
-    lists.all().sweep(simd, &query, 60 * 2, &mut found);
+    simd.sweep(lists.all(), &query, 60 * 2, &mut found);
     assert!(found.len() > ROOM, "no overflow: {found:?}");
     // The first leg, from the anchor to the ring, is clear: it goes below all walls.
     let traces = settled(&model, &[Trace { id: 0, points }]);
@@ -213,7 +213,10 @@ fn where_all_sees_all_everything_is_tried() {
     let traces = settled(&model, &(0..12).map(trace).collect::<Vec<_>>());
     agree(&model, &traces);
     let visible = Lists::new(model.clone()).after(0);
-    assert!(visible.of(9000, f64::INFINITY).is_some_and(|list| list.len() == 9000), "the anchor does not see too much");
+    assert!(
+        visible.of(model.pivot(None), f64::INFINITY).is_some_and(|list| list.len() == 9000),
+        "the anchor does not see too much"
+    );
 }
 
 /// Walls that lie on each other are cut by each other's ends into more pieces than are kept.

@@ -71,7 +71,7 @@ proptest! {
                 None => (1, Query::leg(&frame, pivot, points[0], points[1])),
             };
             let mut named = vec![];
-            Lists::new(model.clone()).all().sweep(simd, &query, model.vertices().len(), &mut named);
+            simd.sweep(Lists::new(model.clone()).all(), &query, model.vertices().len(), &mut named);
             for leg in 0..legs {
                 let from = if leg == 0 { corners[1] } else { points[leg] };
                 for (vertex, &p) in model.vertices().iter().enumerate() {
@@ -102,7 +102,7 @@ proptest! {
                 if let Some(line) = line {
                     let mut lines = [Wrapping::new(0, line)];
                     for from in (0..window.legs).step_by(7) {
-                        Wrapping::meet(simd, &mut lines, &slopes, from, window.legs - from);
+                        simd.meet(&mut lines, &slopes, from, window.legs - from);
                         met.extend((from..window.legs.min(from + 7)).filter(|leg| lines[0].met >> (leg - from) & 1 == 1));
                     }
                 }

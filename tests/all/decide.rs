@@ -3,8 +3,8 @@
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
-use tautline::candidates::LISTS_BUDGET;
-use tautline::fast::{Answer, MOST_LEGS, NOTHING, Question, UNWRAP, decide};
+use tautline::candidates::{LISTS_BUDGET, ListKey, Rank};
+use tautline::fast::{Answer, MOST_LEGS, NOBODY, NOTHING, Question, UNWRAP, decide};
 use tautline::gpu::{DECIDE_WGSL, Deciding, Device, GpuPass, Tuning};
 
 use crate::support::{posts, software};
@@ -20,7 +20,7 @@ fn whole_questions() -> impl Strategy<Value = (Vec<Vec2>, Vec<(Question, Vec<Vec
     let question = (wedge, 0..99u8, point(2), turn, (point(9), sign), 0..60u32, points);
     let question = question.prop_map(
         |([right, left, ahead], reach, origin, (start, dir, wrapped, barred), (way, back), count, points)| {
-            let (barred, legs) = (barred.unwrap_or(NOTHING), points.len() as u32 - 1);
+            let (barred, legs) = (barred.map_or(NOBODY, Rank), points.len() as u32 - 1);
             let (wrapped, reach) = (wrapped.into(), reach.into());
             (
                 Question {
@@ -47,9 +47,10 @@ fn whole_questions() -> impl Strategy<Value = (Vec<Vec2>, Vec<(Question, Vec<Vec
 }
 
 /// What the device makes of questions about vertices from place `first` on.
-fn ask(pass: &mut GpuPass<Deciding>, key: u32, vertices: &[Vec2], asked: &[(Question, Vec<Vec2>)]) -> Vec<Answer> {
+fn ask(pass: &mut GpuPass<Deciding>, vertices: &[Vec2], asked: &[(Question, Vec<Vec2>)]) -> Vec<Answer> {
     pass.start_round();
-    let first = pass.place(key, vertices.len(), || vertices.iter().map(Vec2::to_array).collect()).unwrap();
+    let first =
+        pass.place(ListKey::default(), vertices.len(), || vertices.iter().map(Vec2::to_array).collect()).unwrap();
     let mut points: Vec<[f32; 2]> = vec![];
     let mut questions = vec![];
     for (question, own) in asked {
@@ -71,7 +72,7 @@ fn twins_agree(device: &Device, wgsl: &str, cases: u32) -> Result<[usize; 3], St
     let result = TestRunner::new(config).run(&whole_questions(), |(vertices, asked)| {
         let (met, pass) = &mut *counts.borrow_mut();
         pass.forget();
-        for (answer, (question, points)) in ask(pass, 0, &vertices, &asked).iter().zip(&asked) {
+        for (answer, (question, points)) in ask(pass, &vertices, &asked).iter().zip(&asked) {
             let twin = decide(question, points, &vertices[..question.count as usize]);
             prop_assert_eq!(answer, &twin);
             met[match twin.leg {
@@ -144,10 +145,10 @@ fn lists_of_several_pages_are_decided_over_all_of_them() {
             let at = |k: u32| Vec2::new(((i * 37 + k * 11) % 97) as f32 - 48.0, ((i * 53 + k * 29) % 89) as f32 - 44.0);
             let points: Vec<_> = (0..5).map(at).collect();
             let count = 500 * i + 1;
-            (Question { reach: 1.0, legs: 4, count, barred: NOTHING, ..Question::default() }, points)
+            (Question { reach: 1.0, legs: 4, count, barred: NOBODY, ..Question::default() }, points)
         })
         .collect();
-    let answers = ask(&mut pass, 0, &vertices, &asked);
+    let answers = ask(&mut pass, &vertices, &asked);
     for (answer, (question, points)) in answers.iter().zip(&asked) {
         assert_eq!(*answer, decide(question, points, &vertices[..question.count as usize]));
     }

@@ -15,6 +15,7 @@ mod fast;
 mod filter;
 mod formats;
 mod gallery;
+mod house;
 mod live;
 mod pictures;
 mod pushed;

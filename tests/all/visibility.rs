@@ -53,14 +53,14 @@ fn check(kind: Kind, model: &Model) -> Result<usize, TestCaseError> {
     let is_near = |p: DVec2| p.cmpge(reach.0).all() && p.cmple(reach.1).all();
     let near = Visibility::within(model, reach).expect("a part can be triangulated where the whole can");
     let (mut scratch, mut seen, mut total) = (Scratch::default(), vec![], 0);
-    for pivot in 0..=model.vertices().len() as u32 {
+    for pivot in model.pivots() {
         visibility.look(pivot, &mut scratch, &mut seen);
         total += seen.len();
         let mut once = seen.clone();
         once.sort_unstable();
         once.dedup();
         prop_assert_eq!(once.len(), seen.len(), "a vertex is listed twice");
-        let o = model.vertices().get(pivot as usize).copied().unwrap_or(model.anchor());
+        let o = model.position(pivot);
         if is_near(o) {
             let mut nearby = vec![];
             near.look(pivot, &mut scratch, &mut nearby);
@@ -85,7 +85,7 @@ fn check(kind: Kind, model: &Model) -> Result<usize, TestCaseError> {
         let lines: Vec<[DVec2; 2]> = (0..model.scene().walls().len())
             .map(|wall| model.scene().ends(wall))
             .filter(|&[u, v]| orient(u, v, o) != 0.0)
-            .skip(pivot as usize % 5)
+            .skip(pivot.index() % 5)
             .take(3)
             .collect();
         let is_outside = |p: DVec2, [u, v]: [DVec2; 2]| opposite(orient(u, v, o), orient(u, v, p));

@@ -31,7 +31,8 @@ fn row(row: &Row) -> Value {
     let phases: Map<_, _> = Phase::ALL.iter().zip(row.phases).map(|(p, ns)| (p.name().to_owned(), json!(ns))).collect();
     json!({
         "engine": contender.engine.name, "variant": contender.variant, "precision": contender.precision(),
-        "scene": setting.scene.name(), "n": row.n, "remaining": row.remaining, "step": setting.step, "traces": row.traces, "batch": setting.traces,
+        "scene": setting.scene.name(), "n": row.n, "remaining": row.remaining, "step": setting.step,
+        "traces": row.traces, "batch": setting.traces,
         "steps": row.steps, "window": contender.window(setting.window), "threads": contender.engine.threads(),
         "ns_per_step": spread(row.ns_per_step), "steps_per_second": row.steps_per_second(),
         "tests_per_step": row.tests_per_step, "tests_avoided_per_step": row.tests_avoided_per_step,

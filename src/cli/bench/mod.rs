@@ -14,7 +14,8 @@ use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured,
 
 use super::engine::{measured, named, notes};
 use super::failure::Failure;
-use super::input::{FileArgs, point};
+use super::input::FileArgs;
+use super::parse::point;
 use super::progress::Runs;
 use super::{named_scene, print, print_json};
 
@@ -33,7 +34,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     step: Option<f64>,
     /// How many traces there are
-    #[arg(long, alias = "traces", value_name = "N", default_value = "2000", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, alias = "traces", value_name = "N", default_value = "2000",
+        value_parser = clap::value_parser!(u32).range(1..))]
     count: u32,
     /// How many steps a trace has
     #[arg(long, value_name = "N", default_value = "1000", value_parser = clap::value_parser!(u32).range(1..))]

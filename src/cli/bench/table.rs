@@ -5,7 +5,7 @@ use tautline::environment::Environment;
 use tautline::report::Spread;
 use tautline::report::bench::{Plan, Row, Setting, Sweep};
 
-use super::super::summary::{counted, grouped, short};
+use super::super::words::{counted, grouped, short};
 
 /// What stands where there is no number.
 const NONE: &str = "-";
@@ -112,8 +112,8 @@ fn rate(per_second: f64) -> String {
     if per_second >= 1000.0 { grouped(per_second.round() as u64) } else { short(per_second) }
 }
 
-/// Rows below a heading, all columns as wide as they need be: the first ones are names and stand on the left, the last ones
-/// numbers and stand on the right.
+/// Rows below a heading, all columns as wide as they need be: the first ones are names and stand on the left, the last
+/// ones numbers and stand on the right.
 fn table<const A: usize, const B: usize>(
     names: &[&str; A],
     numbers: &[&str; B],
@@ -126,7 +126,8 @@ fn table<const A: usize, const B: usize>(
     aligned(A, &std::iter::once(heading).chain(cells).collect::<Vec<_>>())
 }
 
-/// Lines of as many cells, all columns as wide as they need be: the first `left` stand on the left, the others on the right.
+/// Lines of as many cells, all columns as wide as they need be: the first `left` stand on the left, the others on the
+/// right.
 pub(in crate::cli) fn aligned(left: usize, lines: &[Vec<String>]) -> String {
     let columns = lines.first().map_or(0, Vec::len);
     let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);

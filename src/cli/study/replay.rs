@@ -15,7 +15,7 @@ use super::BaseArgs;
 use crate::cli::failure::Failure;
 use crate::cli::look::{Look, Target, write, write_whole};
 use crate::cli::print;
-use crate::cli::summary::{counted, short};
+use crate::cli::words::{counted, short};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

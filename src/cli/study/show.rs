@@ -11,8 +11,8 @@ use super::BaseArgs;
 use super::run::print_answer;
 use crate::cli::failure::Failure;
 use crate::cli::print;
-use crate::cli::summary::{grouped, short};
 use crate::cli::trade;
+use crate::cli::words::{grouped, short};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {

@@ -21,10 +21,10 @@ use tautline::trace::{Trace, read_traces};
 use super::bench::{length, open_device};
 use super::engine::measured;
 use super::failure::Failure;
-use super::input::{FileArgs, above_zero, point};
+use super::input::FileArgs;
 use super::look::write_whole;
+use super::parse::{above_zero, point, stride};
 use super::progress::Runs;
-use super::trade::stride;
 use super::{named_scene, print, print_json};
 
 /// The seed of built-in walks and scenes unless told otherwise.

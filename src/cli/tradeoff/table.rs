@@ -4,7 +4,7 @@ use tautline::environment::Environment;
 use tautline::report::tradeoff::{Answer, Failed, Point, Tradeoff};
 
 use crate::cli::bench::table::{aligned, range};
-use crate::cli::summary::{counted, grouped, short};
+use crate::cli::words::{counted, grouped, short};
 
 /// What stands where there is no number.
 const NONE: &str = "-";
@@ -13,10 +13,13 @@ const NONE: &str = "-";
 pub(super) fn report(environment: &Environment, repeats: u32, measured: &Tradeoff, hint: bool) -> String {
     let mut text = head(environment, repeats, measured);
     text += &aligned(3, &errors(&measured.points));
-    text += "\n* no other point is faster and as right. events, ropes: traces of which they differ, in all or at the end;\n";
-    text += "none of N seen: below 3/N, with 95 % confidence. funnel knows no contacts passed straight, which are events of the rest.\n";
+    text += "\n* no other point is faster and as right. events, ropes: traces of which they differ, in all or at the \
+        end;\n";
+    text += "none of N seen: below 3/N, with 95 % confidence. funnel knows no contacts passed straight, which are \
+        events of the rest.\n";
     text += "length: relative error at the end, over the traces.\n";
-    text += "jumps: steps that every K-th point would have taken through a wall; they are walked point by point. crossing: traces\n\
+    text += "jumps: steps that every K-th point would have taken through a wall; they are walked point by point. \
+        crossing: traces\n\
              that a simplified wall is in the way of.\n";
     text += "\nthe study's own answers: error of the method, ± what the sample leaves open (one standard error)\n\n";
     text += &aligned(2, &answers(&measured.points));

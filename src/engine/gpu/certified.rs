@@ -29,8 +29,8 @@ impl Gpu {
         Self::with(device, Lists::new(model), LISTS_BUDGET, tuning, SWEEP_WGSL)
     }
 
-    /// An engine that tries the vertices of `lists`, keeps up to `budget` bytes of them on the device, and takes `tuning`
-    /// instead of what suits the adapter and `wgsl` instead of `sweep.wgsl`.
+    /// An engine that tries the vertices of `lists` and keeps up to `budget` bytes of them on the device. `tuning`
+    /// takes the place of what suits the adapter, `wgsl` that of `sweep.wgsl`.
     ///
     /// # Errors
     ///

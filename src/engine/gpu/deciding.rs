@@ -9,10 +9,10 @@ use crate::candidates::{List, Lists, Window};
 use crate::engine::Phase;
 use crate::engine::progress::Progress;
 use crate::engine::windows::FIRST_WINDOW;
-use crate::fast::{Answer, MOST_LEGS, NOTHING, Question, UNWRAP, rounded};
+use crate::fast::{Answer, MOST_LEGS, NOBODY, NOTHING, Question, UNWRAP, rounded};
 use crate::gpu::Deciding;
 use crate::rope::{EventKind, Side, TraceRecord};
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
 
 /// How long the hair is by which a point that stands on a vertex is displaced, in the frame's unit: 2^-14. The turn that
@@ -71,15 +71,14 @@ impl Player for Hasty {
     fn ask(&mut self, shared: &Shared<'_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<Deciding>> {
         let lists = shared.lists;
         let (model, frame, rope) = (lists.model(), lists.frame(), &self.progress.rope);
-        let (pivot, contact) = (rope.pivot(), rope.contacts().last());
-        let number = contact.map_or(model.vertices().len() as u32, |c| c.vertex);
+        let (o, contact) = (rope.pivot(), rope.contacts().last());
+        let pivot = model.pivot(contact.map(|c| c.vertex));
         // Where a trace crosses walls, the rope can meet anything. Elsewhere lists are made at once, since all answers have
         // to come from the device.
         let list = shared.job.time(Phase::Queries, || match trace.breaks_rules() {
             true => Some(Arc::clone(lists.all())),
-            false => lists.of(number, f64::INFINITY),
+            false => lists.of(pivot, f64::INFINITY),
         })?;
-        let key = lists.key(number, &list);
         let query = shared.job.time(Phase::Queries, || {
             let first = self.progress.at;
             let most = self.width.min(shared.window).min(MOST_LEGS).min(trace.points().len() - 1 - first);
@@ -91,29 +90,28 @@ impl Player for Hasty {
                 points = &self.plucked;
             }
             let start = self.turned.map(|t| t.start);
-            let window = Window::fold(shared.simd, pivot, start, points, &mut tools.slopes);
+            let window = Window::fold(shared.simd, o, start, points, &mut tools.slopes);
             self.legs = window.map_or(1, |w| w.legs);
             self.points.clear();
-            self.points.extend(points[..=self.legs].iter().map(|&p| rounded(frame.way(pivot, p)).to_array()));
+            self.points.extend(points[..=self.legs].iter().map(|&p| rounded(frame.way(o, p)).to_array()));
             let squared = match window {
                 Some(window) => window.squared,
-                None => points[..2].iter().map(|p| p.distance_squared(pivot)).fold(0.0, f64::max),
+                None => points[..2].iter().map(|p| p.distance_squared(o)).fold(0.0, f64::max),
             };
-            let is_own = key == number;
             Question {
-                origin: if is_own { Vec2::ZERO } else { frame.place(pivot).as_vec2() },
-                way: rounded(frame.way(rope.prior(), pivot)),
+                origin: if list.is_of_any() { frame.place(o).as_vec2() } else { Vec2::ZERO },
+                way: rounded(frame.way(rope.prior(), o)),
                 back: contact.map_or(0.0, |c| -c.side.sign() as f32),
                 start: rounded(frame.way(DVec2::ZERO, start.unwrap_or_default())),
                 dir: self.turned.map_or(0.0, |t| t.to.sign() as f32),
                 wrapped: self.turned.is_some_and(|t| t.left.is_none()).into(),
-                barred: self.turned.and_then(|t| list.place_of(t.left?)).unwrap_or(NOTHING),
+                barred: self.turned.and_then(|t| list.rank_of(t.left?)).unwrap_or(NOBODY),
                 count: list.within(squared) as u32,
                 legs: self.legs as u32,
                 ..Question::wedge(frame, window.as_ref())
             }
         });
-        Some(Asked { pivot: key, list, query })
+        Some(Asked { pivot, key: lists.key(pivot, &list), list, query })
     }
 
     fn points(&self) -> &[[f32; 2]] {
@@ -145,20 +143,19 @@ impl Player for Hasty {
         if answer.place == UNWRAP {
             self.unwrap(trace, Side::of(answer.dir.into()))
         } else {
-            let place = answer.place.wrapping_sub(question.first) as usize;
-            let vertex = list.number(place).ok_or(Astray)?;
+            let vertex = list.vertex(answer.place.rank(question.first)).ok_or(Astray)?;
             self.wrap(shared.lists.model(), trace, vertex, Side::of(answer.dir.into()));
             Ok(())
         }
     }
 
     /// Relative to the pivot where the list is its own, so that what is near is as exact as f32 can say.
-    fn coordinates(lists: &Lists, pivot: u32, list: &List) -> Vec<[f32; 2]> {
+    fn coordinates(lists: &Lists, pivot: Pivot, list: &List) -> Vec<[f32; 2]> {
         if list.is_of_any() {
             return list.coordinates().collect();
         }
         let (model, frame) = (lists.model(), lists.frame());
-        let at = model.vertices().get(pivot as usize).copied().unwrap_or(model.anchor());
+        let at = model.position(pivot);
         list.numbers().map(|v| rounded(frame.way(at, model.vertices()[v as usize])).to_array()).collect()
     }
 }

@@ -11,10 +11,11 @@ use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
-/// Evaluates traces on a GPU that decides alone, in f32, for one model. See [`fast`](crate::fast) for what that is worth.
+/// Evaluates traces on a GPU that decides alone, in f32, for one model. See [`fast`](crate::fast) for what that is
+/// worth.
 ///
-/// A trace's record depends on the device and the scene, but not on the other traces nor on how many are on the device at a
-/// time.
+/// A trace's record depends on the device and the scene, but not on the other traces nor on how many are on the device
+/// at a time.
 pub struct FastGpu {
     lists: Lists,
     pass: GpuPass<Deciding>,
@@ -38,7 +39,8 @@ impl FastGpu {
     ///
     /// What the device complains of, be it the shader or the memory.
     pub fn with(device: Device, model: Arc<Model>, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
-        // At once: only the device answers. And never told how far traces go: what is listed is then the same for all.
+        // A list is made on first use, since no CPU answers in the device's place. `cover` is never called, so that a
+        // record does not depend on how far the other traces of its batch go.
         let n = model.vertices().len();
         let lists = Lists::new(model).after(0);
         let pass = GpuPass::new(device, lists.keys(), n, LISTS_BUDGET, tuning, wgsl)?;

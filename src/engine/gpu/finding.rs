@@ -6,7 +6,7 @@ use crate::engine::Phase;
 use crate::engine::windows::Windows;
 use crate::gpu::Sweeping;
 use crate::rope::TraceRecord;
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
 
 impl Player for Windows {
@@ -47,7 +47,7 @@ impl Player for Windows {
             return None;
         };
         let query = Query { count: list.within(self.squared(trace)) as u32, ..query };
-        Some(Asked { pivot: lists.key(pivot, &list), list, query })
+        Some(Asked { pivot, key: lists.key(pivot, &list), list, query })
     }
 
     fn answered(
@@ -65,7 +65,7 @@ impl Player for Windows {
             Some(places) => {
                 let candidates = &mut candidates[..places.len()];
                 for (candidate, place) in candidates.iter_mut().zip(places) {
-                    *candidate = list.number(place.wrapping_sub(query.first) as usize).ok_or(Astray)?;
+                    *candidate = list.vertex(place.rank(query.first)).ok_or(Astray)?;
                 }
                 self.recall(trace, simd, slopes);
                 self.go_on(model, trace, candidates, simd, slopes);
@@ -74,7 +74,7 @@ impl Player for Windows {
             // Too many for one leg.
             None => {
                 let mut candidates = Vec::new();
-                list.sweep(simd, query, query.count as usize, &mut candidates);
+                simd.sweep(list, query, query.count as usize, &mut candidates);
                 self.recall(trace, simd, slopes);
                 self.go_on(model, trace, &candidates, simd, slopes);
             }
@@ -88,7 +88,7 @@ fn look(
     windows: &mut Windows,
     shared: &Shared<'_>,
     trace: &SettledTrace,
-    pivot: u32,
+    pivot: Pivot,
     query: &Query,
     tools: &mut Tools,
 ) {

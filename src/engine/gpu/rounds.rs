@@ -1,21 +1,21 @@
 //! Many traces at once on a device: each round, every active trace asks one query, the device answers them all, and the
-//! traces go on by the answers. Finished traces leave and waiting ones take their place. Two half-batches take turns, so that
-//! one is on the device while the other is on the CPU.
+//! traces go on by the answers. Finished traces leave and waiting ones take their place. Two half-batches take turns,
+//! so that one is on the device while the other is on the CPU.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use crate::candidates::{List, Lists, Simd, Slopes};
+use crate::candidates::{DevicePlace, List, ListKey, Lists, Simd, Slopes};
 use crate::engine::{EngineError, Job, Phase};
 use crate::gpu::{GpuPass, HALVES, Kernel};
 use crate::rope::TraceRecord;
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
 use crate::visibility::Scratch;
 
-/// What takes one trace after the other from query to query.
+/// Takes a trace from query to query, then the next one: it asks, and goes on by what the device answers.
 pub(super) trait Player: Send {
     /// What answers it.
     type Kernel: Kernel;
@@ -51,7 +51,7 @@ pub(super) trait Player: Send {
     ) -> Result<(), Astray>;
 
     /// What the device is to hold of the `list` of which the key is `pivot`.
-    fn coordinates(_: &Lists, _pivot: u32, list: &List) -> Vec<[f32; 2]> {
+    fn coordinates(_: &Lists, _pivot: Pivot, list: &List) -> Vec<[f32; 2]> {
         list.coordinates().collect()
     }
 }
@@ -169,10 +169,10 @@ impl<'a, P: Player> Half<'a, P> {
             pass.start_round();
             self.order.clear();
             for (number, slot) in (0..).zip(&mut self.slots) {
-                if let Some(Asked { pivot, list, .. }) = &slot.asked
-                    && let Some(place) = pass.place(*pivot, list.len(), || P::coordinates(shared.lists, *pivot, list))
+                if let Some(Asked { pivot, key, list, .. }) = &slot.asked
+                    && let Some(place) = pass.place(*key, list.len(), || P::coordinates(shared.lists, *pivot, list))
                 {
-                    self.order.push(u64::from(place) << 32 | number);
+                    self.order.push(u64::from(place.0) << 32 | number);
                 }
             }
             self.order.sort_unstable();
@@ -182,7 +182,8 @@ impl<'a, P: Player> Half<'a, P> {
             for (answer, &ordered) in (0..).zip(&self.order) {
                 let Slot { player, asked, answer: own, .. } = &mut self.slots[ordered as u32 as usize];
                 let Some(asked) = asked else { continue };
-                let query = P::Kernel::placed(&asked.query, (ordered >> 32) as u32, self.points.len() as u32);
+                let query =
+                    P::Kernel::placed(&asked.query, DevicePlace((ordered >> 32) as u32), self.points.len() as u32);
                 tests += u64::from(P::Kernel::tried(&query).1);
                 self.queries.push(query);
                 self.points.extend_from_slice(player.points());
@@ -208,8 +209,9 @@ struct Slot<'a, P: Player> {
 
 /// What a slot waits for.
 pub(super) struct Asked<K: Kernel> {
-    /// The key of the list: the pivot, or another number for a list that serves several.
-    pub pivot: u32,
+    pub pivot: Pivot,
+    /// That of the list.
+    pub key: ListKey,
     pub list: Arc<List>,
     pub query: K::Query,
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use super::tools::{around, case, model, on_circle, p, walls_of};
 use super::touching::wander;
 use crate::example::draws::Draws;

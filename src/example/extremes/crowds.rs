@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use super::tools::{case, model, on_circle, p, walls_of, way};
 use super::touching::wander;
 use crate::example::draws::Draws;
@@ -59,8 +59,8 @@ pub(super) fn piles() -> Vec<Extreme> {
             tees.collect()
         }),
     ];
-    // Across their line a step wraps the rope round 3,000 ends, each of which costs a look at all; along it, it touches as many,
-    // and at each up to 1,500 walls are looked at: none is made here.
+    // Across their line a step wraps the rope round 3,000 ends, each of which costs a look at all; along it, it touches
+    // as many, and at each up to 1,500 walls are looked at: none is made here.
     let most = pile("1,500 walls on one line, each in the next", nested(1500), 0);
     scenes.into_iter().map(|(name, walls)| pile(name, walls, 3)).chain([most]).collect()
 }

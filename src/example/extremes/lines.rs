@@ -2,14 +2,14 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use super::tools::{around, case, model, nudged, p, way};
 
 /// How many steps there are from 1 to 2^40 units in the last place.
 const POWERS: usize = 41;
 
-/// Fans of rays, each with three wall ends that would lie on it but for 1 to 2^40 units in the last place. The trace goes over
-/// the far end of each, back and forth, and onto it.
+/// Fans of rays, each with three wall ends that would lie on it but for 1 to 2^40 units in the last place. The trace
+/// goes over the far end of each, back and forth, and onto it.
 pub(super) fn near_lines() -> Vec<Extreme> {
     let mut cases = Vec::new();
     for (centre, shift) in [(p(0.0, 0.0), 0), (p(0.1, 0.2), 7), (p(1000.0 / 3.0, -1e-3), 19)] {
@@ -61,8 +61,8 @@ fn square(share: f64) -> DVec2 {
     (0..side as usize % 4).fold(along, |way, _| way.perp())
 }
 
-/// Thin boxes on top of each other with gaps as thin between them, through which the trace winds there and back; level and
-/// tilted, and two walls that point at each other.
+/// Thin boxes on top of each other with gaps as thin between them, through which the trace winds there and back; level
+/// and tilted, and two walls that point at each other.
 pub(super) fn needles() -> Vec<Extreme> {
     let mut cases = Vec::new();
     for k in 3..=15 {
@@ -110,7 +110,8 @@ fn stack(thin: f64, base: f64, slope: f64, name: String) -> Extreme {
     case(name, walls, anchor, traces)
 }
 
-/// Two walls that all but touch, one a little higher; the trace goes through between them, again and again, and round one.
+/// Two walls that all but touch, one a little higher; the trace goes through between them, again and again, and round
+/// one.
 fn points(thin: f64, name: String) -> Extreme {
     let walls = vec![[p(-1.0, 0.0), p(-thin, 0.0)], [p(thin, thin / 8.0), p(1.0, thin)]];
     let anchor = p(0.25, -1.0);

@@ -2,13 +2,13 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use super::rays::lattice;
 use super::tools::{model, p, walls_of};
 use crate::example::{Walker, random_walls, walks};
 
-/// The same scenes and traces at all scales, all powers of two and so exact: what happens is the same in all of them. The
-/// lattice reaches from 2^-450 to 2^500, the first and the last magnitude that is taken.
+/// The same scenes and traces at all scales, all powers of two and so exact: what happens is the same in all of them.
+/// The lattice reaches from 2^-450 to 2^500, the first and the last magnitude that is taken.
 pub(super) fn scales() -> Vec<Extreme> {
     let (walls, lattice) = (anywhere(p(0.0, 0.0), 1.0), whole());
     let alike = [0, -300, -150, -60, -8, 8, 60, 150, 300].map(|k| (k, k));

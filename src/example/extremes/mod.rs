@@ -1,10 +1,11 @@
-//! Extreme cases: families of scenes and traces at the ends of what is taken, where most signs are ties or as good as, and
-//! where there is very much or very little of something.
+//! Extreme cases: families of scenes and traces at the ends of what is taken, where most signs are ties or as good as,
+//! and where there is very much or very little of something.
 //!
 //! Every trace keeps to the rules, so exact engines must give the right ropes for all of them, or say why they cannot.
 
 mod anchors;
 mod crowds;
+mod extreme;
 mod lines;
 mod magnitudes;
 mod rays;
@@ -12,33 +13,7 @@ mod steps;
 mod tools;
 mod touching;
 
-use std::sync::Arc;
-
-use glam::DVec2;
-
-use crate::scene::{Model, Scene};
-use crate::trace::Trace;
-
-/// A scene and traces in it.
-#[derive(Debug, Clone)]
-pub struct Extreme {
-    /// What is extreme here, among the others of its family.
-    pub name: String,
-    /// The ends of the walls; some may have no length.
-    pub walls: Vec<[DVec2; 2]>,
-    /// Where the ropes are tied.
-    pub anchor: DVec2,
-    /// What the free ends are dragged along; all keep to the rules.
-    pub traces: Vec<Trace>,
-}
-
-impl Extreme {
-    /// The scene, ready to be evaluated. O(walls log walls).
-    pub fn model(&self) -> Arc<Model> {
-        let scene = Scene::new(self.walls.iter().copied()).expect("all coordinates can be computed with");
-        Arc::new(Model::new(scene, Some(self.anchor)).expect("the anchor stands off the walls or at an end"))
-    }
-}
+pub use extreme::Extreme;
 
 /// Cases that are extreme in one way.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use super::tools::{case, model, p, way};
 use crate::example::draws::Draws;
 
@@ -18,8 +18,8 @@ pub(super) fn lattices() -> Vec<Extreme> {
     cases
 }
 
-/// `walls` walls between whole numbers up to `half` in magnitude, short ones along x or y or, if `slanted`, in any direction;
-/// and traces on whole numbers, the anchor among them.
+/// `walls` walls between whole numbers up to `half` in magnitude, short ones along x or y or, if `slanted`, in any
+/// direction; and traces on whole numbers, the anchor among them.
 pub(super) fn lattice(walls: usize, half: i64, seed: u64, slanted: bool) -> Extreme {
     let mut draws = Draws::new(seed, Draws::SCENE);
     let anchor = p(1.0, 1.0);
@@ -76,8 +76,8 @@ pub(super) fn rays() -> Vec<Extreme> {
     cases
 }
 
-/// Small walls round the anchor, and traces over points that lie exactly on the anchor's rays of their ends, and on the rays
-/// from one end over another.
+/// Small walls round the anchor, and traces over points that lie exactly on the anchor's rays of their ends, and on the
+/// rays from one end over another.
 fn on_all_rays(walls: usize) -> Extreme {
     let Extreme { walls, anchor, .. } = lattice(walls, 6, 11, true);
     let model = model(&walls, anchor);

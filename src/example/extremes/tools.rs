@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use crate::scene::{Model, Scene};
 use crate::trace::{Trace, first_violation};
 
@@ -28,8 +28,8 @@ pub(super) fn walls_of(scene: &Scene) -> Vec<[DVec2; 2]> {
     (0..scene.walls().len()).map(|wall| scene.ends(wall)).collect()
 }
 
-/// The point of the unit circle after `turns`; quarters are exact. Made without angles: sines and cosines are not the same
-/// on every machine.
+/// The point of the unit circle after `turns`; quarters are exact. Made without angles: sines and cosines are not the
+/// same on every machine.
 pub(super) fn on_circle(turns: f64) -> DVec2 {
     let quarters = 4.0 * turns;
     let t = quarters - quarters.floor();
@@ -57,8 +57,8 @@ pub(super) fn case(
     Extreme { name: name.into(), walls, anchor, traces: numbered(traces) }
 }
 
-/// The way from the anchor over some of `stops` stops: those to which a step would break the rules are left out. `next` gives
-/// the next stop, given where the free end stands.
+/// The way from the anchor over some of `stops` stops: those to which a step would break the rules are left out. `next`
+/// gives the next stop, given where the free end stands.
 pub(super) fn way(model: &Model, stops: usize, mut next: impl FnMut(DVec2) -> DVec2) -> Vec<DVec2> {
     let mut points = vec![model.anchor()];
     // On which side the free end passes what it touches is open until it stands clear of all walls.

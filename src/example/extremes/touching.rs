@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Extreme;
+use super::extreme::Extreme;
 use super::tools::{along, around, case, model, on_circle, p, walls_of, way};
 use crate::example::draws::Draws;
 use crate::example::lattice_walls;

@@ -1,8 +1,8 @@
 //! Shapes of sums and products: what a device may make of them, and what it makes of them.
 //!
-//! One shape does not speak for others. SwiftShader keeps `(a + b) - a` as it is written and takes `(a - b) + b` for `a`; other
-//! compilers do it the other way about. So the probe asks for every shape that the kernels have, and a test holds it against
-//! their source.
+//! One shape does not speak for others. SwiftShader keeps `(a + b) - a` as it is written and takes `(a - b) + b` for
+//! `a`; other compilers do it the other way about. So the probe asks for every shape that the kernels have, and a test
+//! holds it against their source.
 
 #[cfg(test)]
 mod source;
@@ -10,7 +10,7 @@ mod source;
 use std::fmt;
 use std::ops::{Add, Mul, Sub};
 
-use super::arithmetic::Sample;
+use super::sample::Sample;
 
 /// The shapes for which the probe asks, in its order, each as the kernels write it: the same letter is the same number.
 pub(super) const SHAPES: [&str; 18] = [
@@ -266,8 +266,8 @@ mod tests {
         }
     }
 
-    /// Shaders with one sum or product more are found out, also where it only comes about when functions are put in place, or by
-    /// what is kept in a variable.
+    /// Shaders with one sum or product more are found out, also where it only comes about when functions are put in
+    /// place, or by what is kept in a variable.
     #[test]
     fn a_new_shape_in_a_shader_is_missed() {
         let asked = shapes(PROBE_WGSL);

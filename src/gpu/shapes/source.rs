@@ -1,8 +1,9 @@
 //! Which sums and products shaders contain, read off their source: that the probe asks for all of them.
 //!
-//! A *shape* is how sums and products of f32 hang together, with the same letter for the same number: `(a*b)-(c*d)` is a
-//! cross product. Compilers rewrite by shape: one that keeps `(a+b)-a` as it is may take `(a-b)+b` for `a`. So calls are
-//! followed, as compilers do that put functions in place, and so is what was kept in a variable and taken out again.
+//! A *shape* is how sums and products of f32 hang together, with the same letter for the same number: `(a*b)-(c*d)` is
+//! a cross product. Compilers rewrite by shape: one that keeps `(a+b)-a` as it is may take `(a-b)+b` for `a`. So calls
+//! are followed, as compilers do that put functions in place, and so is what was kept in a variable and taken out
+//! again.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;

@@ -5,9 +5,10 @@ use std::fmt::Write;
 
 use glam::DVec2;
 
-use super::canvas::{Canvas, DASHES, turn_mark};
+use super::canvas::Canvas;
 use super::film::{Film, most_contacts};
 use super::key::{Entry, Key};
+use super::marks::{DASHES, turn_mark};
 use super::still::Plot;
 use super::theme::Tone;
 use super::trace::TraceStyle;
@@ -110,8 +111,8 @@ impl Canvas<'_> {
         self.svg.raw(&format!("<circle cx=\"{}\" cy=\"{}\" r=\"4.6\" {style}>{x}{y}</circle>", end[0], end[1]));
     }
 
-    /// The rope's points at each moment, as many for each: a rope with fewer corners goes through its pivot several times.
-    /// Where the corners change there are two of one time, which lie on each other.
+    /// The rope's points at each moment, as many for each: a rope with fewer corners goes through its pivot several
+    /// times. Where the corners change there are two of one time, which lie on each other.
     fn ropes(&self, film: &Film, clock: &Clock, anchor: DVec2, corners: usize) -> Vec<Change> {
         let text = |rope: usize, a: DVec2| {
             let mut points: Vec<DVec2> = std::iter::once(anchor).chain(film.ropes[rope].iter().map(|c| c.at)).collect();

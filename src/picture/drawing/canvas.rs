@@ -5,16 +5,11 @@ use std::fmt::Write;
 use glam::DVec2;
 
 use super::key::{Entry, Key};
+use super::marks::{anchor_mark, free_end_mark};
 use super::theme::{Theme, Tone};
-use super::trace::distance;
 use crate::picture::plane::{Frame, View, clip};
 use crate::picture::svg::{Svg, px};
 use crate::scene::Scene;
-
-/// The rope is dashed, the rays of the pivot dash-dotted, the unwrapping ray dotted.
-pub(super) const DASHES: &str = "stroke-width=\"2.2\" stroke-dasharray=\"7 4\" stroke-linejoin=\"round\"";
-pub(super) const RAY_DASHES: &str = "stroke-width=\".9\" stroke-dasharray=\"9 3 1.5 3\"";
-pub(super) const DOTS: &str = "stroke-width=\"2\" stroke-dasharray=\"0 4.5\" stroke-linecap=\"round\"";
 
 /// Where the plane is drawn, in pixels from its own top left corner.
 pub(super) struct Canvas<'a> {
@@ -35,7 +30,8 @@ impl Canvas<'_> {
         (0.0..=self.frame.width).contains(&x) && (0.0..=self.frame.height).contains(&y)
     }
 
-    /// Path data of the part of a line that is to be seen. No number leaves the picture by much, however long the line is.
+    /// Path data of the part of a line that is to be seen. No number leaves the picture by much, however long the line
+    /// is.
     pub(super) fn line(&self, points: &[[f64; 2]]) -> String {
         let room = View { low: DVec2::splat(-8.0), high: DVec2::new(self.frame.width, self.frame.height) + 8.0 };
         let mut data = String::new();
@@ -111,31 +107,7 @@ pub(super) fn wall_style(theme: Theme, letters: usize, wide: f64) -> String {
     format!("fill=\"none\" {stroke} stroke-width=\"{line}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"")
 }
 
-pub(super) fn anchor_mark(svg: &mut Svg, theme: Theme, at: [f64; 2]) {
-    svg.circle(at, 5.0, &theme.both(Tone::Ink, Tone::Ground));
-}
-
-pub(super) fn free_end_mark(svg: &mut Svg, theme: Theme, at: [f64; 2], tone: Tone) {
-    svg.circle(at, 4.6, &format!("{} stroke-width=\"2\"", theme.both(Tone::Ground, tone)));
-}
-
-pub(super) fn point_mark(svg: &mut Svg, theme: Theme, at: [f64; 2], tone: Tone) {
-    svg.circle(at, 2.6, &theme.both(Tone::Ground, tone));
-}
-
-/// A contact that the rope passes straight: a hollow diamond.
-pub(super) fn straight_mark(svg: &mut Svg, theme: Theme, [x, y]: [f64; 2]) {
-    let corners = [[x, y - 4.5], [x + 4.5, y], [x, y + 4.5], [x - 4.5, y]];
-    svg.polygon(&corners, &format!("{} stroke-width=\"1.3\"", theme.both(Tone::Ground, Tone::Ink)));
-}
-
-/// A turn of the rope: round where the wall end lies on its left, square where it lies on its right.
-pub(super) fn turn_mark(svg: &mut Svg, theme: Theme, [x, y]: [f64; 2], left: bool, size: f64, tone: Tone) {
-    let style = theme.both(tone, Tone::Ground);
-    if left {
-        svg.circle([x, y], 3.7 * size, &style);
-    } else {
-        let half = 3.3 * size;
-        svg.rect([x - half, y - half], [2.0 * half, 2.0 * half], &style);
-    }
+/// How far apart two pixels are.
+pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
 }

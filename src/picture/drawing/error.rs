@@ -64,7 +64,8 @@ pub enum DrawError {
         most: usize,
     },
     /// The part of the plane that is to be shown is none.
-    #[error("the part of the plane from ({}, {}) to ({}, {}) is empty or not finite", corners[0], corners[1], corners[2], corners[3])]
+    #[error("the part of the plane from ({}, {}) to ({}, {}) is empty or not finite",
+        corners[0], corners[1], corners[2], corners[3])]
     Part {
         /// The corners, as they were given.
         corners: [String; 4],

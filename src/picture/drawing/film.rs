@@ -35,8 +35,8 @@ pub(super) struct Film {
 }
 
 impl Drawing<'_> {
-    /// The film of a trace, of about `most` moments: those of all events and of every so many steps, or, where events are
-    /// too many, of every so many steps alone.
+    /// The film of a trace, of about `most` moments: those of all events and of every so many steps, or, where events
+    /// are too many, of every so many steps alone.
     pub(super) fn film(&self, dragged: &Dragged<'_>, most: usize) -> Film {
         let every = dragged.points.len().div_ceil(most);
         let events_too = dragged.record.events.len() <= most;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::canvas::{DASHES, DOTS, RAY_DASHES, anchor_mark, free_end_mark, point_mark, straight_mark, turn_mark};
+use super::marks::{DASHES, DOTS, RAY_DASHES, anchor_mark, free_end_mark, point_mark, straight_mark, turn_mark};
 use super::theme::{Theme, Tone};
 use crate::picture::label::{count, width};
 use crate::picture::svg::{Align, Svg};

@@ -5,6 +5,7 @@ mod canvas;
 mod error;
 mod film;
 mod key;
+mod marks;
 mod page;
 mod rays;
 mod rope;
@@ -28,7 +29,8 @@ pub use theme::Theme;
 /// Which part of the plane a drawing shows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Part {
-    /// The traces, their ropes and what is about them; all walls where that is not much more, or where there is no trace.
+    /// The traces, their ropes and what is about them; all walls where that is not much more, or where there is no
+    /// trace.
     #[default]
     Near,
     /// All walls, and the traces.
@@ -42,8 +44,8 @@ const RAYS: usize = 12;
 
 /// A scene with traces and their ropes, to be drawn. The same drawing gives the same bytes.
 ///
-/// The anchor is a filled circle, the points of traces and the free end are hollow ones, walls are solid, ropes dashed, the
-/// rays of the pivot dash-dotted and the unwrapping ray dotted. A key below says what occurs in the picture.
+/// The anchor is a filled circle, the points of traces and the free end are hollow ones, walls are solid, ropes dashed,
+/// the rays of the pivot dash-dotted and the unwrapping ray dotted. A key below says what occurs in the picture.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -143,10 +145,11 @@ impl<'a> Drawing<'a> {
         self
     }
 
-    /// With at most so many rays of the pivot, those nearest to the free end, and its unwrapping ray; with 0 without any.
+    /// With at most so many rays of the pivot, those nearest to the free end, and its unwrapping ray; with 0 without
+    /// any.
     ///
-    /// Unless told otherwise the still picture of one trace has 12 and small ones have none. Pictures of several traces and
-    /// moving ones never have any.
+    /// Unless told otherwise the still picture of one trace has 12 and small ones have none. Pictures of several traces
+    /// and moving ones never have any.
     #[must_use]
     pub fn rays(mut self, most: usize) -> Self {
         self.rays = Some(most);
@@ -184,8 +187,8 @@ impl<'a> Drawing<'a> {
         moments(anchor, self.scene.vertices(), points, &dragged.record.events, each);
     }
 
-    /// The rectangle that is shown, with no side more than `aspect` times the other; the picture of nothing shows the unit
-    /// square.
+    /// The rectangle that is shown, with no side more than `aspect` times the other; the picture of nothing shows the
+    /// unit square.
     fn view(&self, aspect: f64) -> Result<View, DrawError> {
         if let Part::Between(a, b) = self.part {
             let (low, high) = (a.min(b), a.max(b));

@@ -6,9 +6,10 @@ use glam::DVec2;
 use serde_json::{Value, json};
 
 use super::animation::near;
-use super::canvas::{Canvas, DASHES};
+use super::canvas::Canvas;
 use super::film::{Film, most_contacts};
 use super::key::{Entry, Key};
+use super::marks::DASHES;
 use super::rope::{RopeStyle, Shape};
 use super::still::Plot;
 use super::theme::{Theme, Tone};
@@ -25,11 +26,11 @@ const MOMENTS: usize = 20_000;
 const CORNERS: usize = 400_000;
 
 impl Drawing<'_> {
-    /// A page that plays the one trace of this drawing in a browser, with a button and a slider; with no trace or several, a
-    /// page that shows [`svg`](Self::svg). It needs no other file and no network.
+    /// A page that plays the one trace of this drawing in a browser, with a button and a slider; with no trace or
+    /// several, a page that shows [`svg`](Self::svg). It needs no other file and no network.
     ///
-    /// It begins at the moment after [`at_step`](Self::at_step), and by itself if there is none. Without scripts it shows the
-    /// picture of that moment.
+    /// It begins at the moment after [`at_step`](Self::at_step), and by itself if there is none. Without scripts it
+    /// shows the picture of that moment.
     ///
     /// # Errors
     ///
@@ -138,6 +139,7 @@ fn page(theme: Theme, title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n\
-         <style>\n:root {{ color-scheme: {scheme}; }}\n{STYLE}</style>\n</head>\n<body>\n<main>\n{body}</main>\n</body>\n</html>\n"
+         <style>\n:root {{ color-scheme: {scheme}; }}\n{STYLE}</style>\n</head>\n\
+         <body>\n<main>\n{body}</main>\n</body>\n</html>\n"
     )
 }

@@ -2,21 +2,21 @@
 
 use glam::DVec2;
 
-use super::canvas::{Canvas, DOTS, RAY_DASHES};
+use super::canvas::{Canvas, distance};
 use super::key::Entry;
+use super::marks::{DOTS, RAY_DASHES};
 use super::theme::Tone;
-use super::trace::distance;
 use crate::picture::ropes::towards;
 use crate::rope::Moment;
 use crate::scene::Model;
 use crate::visibility::{Scratch, Visibility};
 
 impl Canvas<'_> {
-    /// At most `most` rays, those that lie nearest to the free end, of the wall ends that the pivot sees; and the unwrapping
-    /// ray.
+    /// At most `most` rays, those that lie nearest to the free end, of the wall ends that the pivot sees; and the
+    /// unwrapping ray.
     ///
-    /// The ray of a wall end starts there and goes away from the pivot. Where that ends at a wall, the rope's last leg cannot
-    /// follow it.
+    /// The ray of a wall end starts there and goes away from the pivot. Where that ends at a wall, the rope's last leg
+    /// cannot follow it.
     pub(super) fn rays(&mut self, model: &Model, moment: &Moment, most: usize) {
         if most == 0 {
             return;
@@ -57,7 +57,7 @@ impl Canvas<'_> {
 fn seen(model: &Model, moment: &Moment) -> Vec<u32> {
     let all = model.vertices().len() as u32;
     let Some(visibility) = Visibility::new(model) else { return (0..all).collect() };
-    let pivot = moment.rope.contacts().last().map_or(all, |c| c.vertex);
+    let pivot = model.pivot(moment.rope.contacts().last().map(|c| c.vertex));
     let mut seen = Vec::new();
     visibility.look(pivot, &mut Scratch::default(), &mut seen);
     seen.sort_unstable();

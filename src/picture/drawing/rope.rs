@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 
-use super::canvas::{Canvas, DASHES, straight_mark, turn_mark};
+use super::canvas::{Canvas, distance};
 use super::key::Entry;
+use super::marks::{DASHES, straight_mark, turn_mark};
 use super::theme::Tone;
-use super::trace::distance;
 use crate::picture::label::width;
 use crate::picture::ropes::{beside, towards};
 use crate::picture::svg::Align;
@@ -31,7 +31,8 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    /// The rope at a moment: at the end of a step the taut one, and in the middle of it the one that goes on from there.
+    /// The rope at a moment: at the end of a step the taut one, and in the middle of it the one that goes on from
+    /// there.
     pub(super) fn new(anchor: DVec2, moment: &Moment) -> Self {
         let turns = if moment.event.is_some() { moment.turns() } else { moment.rope.taut(moment.at) };
         // The turns are some of the contacts, in the same order.
@@ -127,8 +128,8 @@ impl Canvas<'_> {
         }
     }
 
-    /// Room for words that are that wide near `at`: in the direction of `away` if that is free, else as near to it as can
-    /// be.
+    /// Room for words that are that wide near `at`: in the direction of `away` if that is free, else as near to it as
+    /// can be.
     fn room(&self, at: [f64; 2], away: [f64; 2], wide: f64, taken: &[Box]) -> Option<Box> {
         let [x, y] = towards(at, away);
         let turned = |degrees: f64| {
@@ -159,7 +160,8 @@ impl Box {
     }
 }
 
-/// The numbers of a wall end's turns, counted from 1, with what is between the first and the last of very many left out.
+/// The numbers of a wall end's turns, counted from 1, with what is between the first and the last of very many left
+/// out.
 fn numbers(turns: &[usize]) -> String {
     let text = |i: &usize| (i + 1).to_string();
     match turns {

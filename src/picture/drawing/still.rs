@@ -23,8 +23,8 @@ const TOP: f64 = 32.0;
 impl Drawing<'_> {
     /// The picture of one moment as SVG: the scene, all traces and the rope of each.
     ///
-    /// Long traces have circles at every 10th point, say, or none; ropes of very many turns have smaller marks, and numbers
-    /// where there is room. O(walls + points + events).
+    /// Long traces have circles at every 10th point, say, or none; ropes of very many turns have smaller marks, and
+    /// numbers where there is room. O(walls + points + events).
     ///
     /// # Errors
     ///

@@ -45,7 +45,8 @@ impl Drawing<'_> {
 impl Drawing<'_> {
     /// A filmstrip as SVG: a small picture for each event, with the free end where it happens.
     ///
-    /// `events` counts from 1; without it the first 24 are shown. A line in the picture says which of how many they are.
+    /// `events` counts from 1; without it the first 24 are shown. A line in the picture says which of how many they
+    /// are.
     ///
     /// # Errors
     ///

@@ -80,8 +80,8 @@ impl Theme {
 
     /// The attributes of what is filled, or has a line, or both.
     ///
-    /// The colours stand in attributes, which everything reads that reads SVG. Classes change them where a reader's style
-    /// applies.
+    /// The colours stand in attributes, which everything reads that reads SVG. Classes change them where a reader's
+    /// style applies.
     fn attributes(self, parts: &[(&str, char, Tone)]) -> String {
         let mut out = String::new();
         if self == Theme::Reader {

@@ -2,14 +2,16 @@
 
 use glam::DVec2;
 
-use super::canvas::{Canvas, point_mark};
+use super::canvas::{Canvas, distance};
 use super::key::Entry;
+use super::marks::point_mark;
 use super::theme::Tone;
 
 /// Circles lie at least that many pixels apart along the trace, on the mean.
 const APART: f64 = 10.0;
 
-/// The most circles for each pixel of the picture's width, so that those of a trace that stays in one place do not cover it.
+/// The most circles for each pixel of the picture's width, so that those of a trace that stays in one place do not
+/// cover it.
 const CIRCLES: f64 = 0.14;
 
 /// The most points of a line in the file. Lines with more are drawn coarser, which nobody can see.
@@ -70,8 +72,8 @@ impl Canvas<'_> {
     }
 }
 
-/// The least of 1, 2, 5, 10 and so on such that circles at every so many of the points are few enough and far enough apart
-/// on the mean.
+/// The least of 1, 2, 5, 10 and so on such that circles at every so many of the points are few enough and far enough
+/// apart on the mean.
 fn every(ways: &[[f64; 2]], seen: usize, most: usize) -> Option<usize> {
     let length: f64 = ways.windows(2).map(|w| distance(w[0], w[1])).sum();
     let steps = ways.len().saturating_sub(1).max(1) as f64;
@@ -97,10 +99,6 @@ fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         }
         least *= 2.0;
     }
-}
-
-pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 #[cfg(test)]

@@ -39,11 +39,6 @@ pub struct Situation {
 const RAYS: usize = 6;
 
 impl Situation {
-    /// All of them, from the plain to the strange.
-    pub fn all() -> &'static [Situation] {
-        situations::ALL
-    }
-
     /// The walls and the anchor.
     pub fn model(&self) -> Arc<Model> {
         let scene = Scene::new(self.walls.iter().map(|ends| ends.map(DVec2::from))).expect("small numbers");

@@ -2,7 +2,14 @@
 
 use super::Situation;
 
-pub(super) const ALL: &[Situation] = &[
+impl Situation {
+    /// All of them, from the plain to the strange.
+    pub fn all() -> &'static [Situation] {
+        ALL
+    }
+}
+
+const ALL: &[Situation] = &[
     Situation {
         name: "wrap",
         title: "Wrap",
@@ -116,8 +123,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "collinear-walls",
         title: "Walls on one line, on different sides",
-        caption: "Wrapped round the far wall end the rope passes the near one straight, and when it leaves the far one, the near \
-                  one holds it: had it been forgotten, the rope would slip through its wall.",
+        caption: "Wrapped round the far wall end the rope passes the near one straight, and when it leaves the far \
+            one, the near one holds it: had it been forgotten, the rope would slip through its wall.",
         walls: &[[[2.0, -2.0], [2.0, 1.0]], [[4.0, 2.0], [4.0, 5.0]]],
         anchor: [0.0, 0.0],
         points: &[[1.0, 2.0], [3.0, 3.0], [3.0, -1.5], [6.0, 0.0], [6.0, 4.5], [6.0, 0.0]],
@@ -146,7 +153,8 @@ pub(super) const ALL: &[Situation] = &[
     Situation {
         name: "touching-a-tip",
         title: "Straight over a tip",
-        caption: "The step leads straight over a wall's end and passes it a hair off, on the side where the wall is not.",
+        caption: "The step leads straight over a wall's end and passes it a hair off, on the side where the wall is \
+            not.",
         walls: &[[[4.0, 1.0], [5.0, 3.0]]],
         anchor: [0.0, 3.0],
         points: &[[1.0, 1.0], [7.0, 1.0], [7.0, 2.5]],

@@ -16,8 +16,8 @@ use crate::trace::SettledTrace;
 pub struct Plan {
     /// How often every contender runs, at least 1.
     pub repeats: usize,
-    /// About how long one run may take. Contenders too slow for all traces run on fewer; those that evaluate many at once
-    /// run on the first steps of them.
+    /// About how long one run may take. Contenders too slow for all traces run on fewer; those that evaluate many at
+    /// once run on the first steps of them.
     pub run: Duration,
 }
 
@@ -55,8 +55,8 @@ pub struct Row {
     pub tests_avoided_per_step: Option<f64>,
     /// Wraps and unwraps a step.
     pub events_per_step: f64,
-    /// The time a step in every phase, in nanoseconds, summed over threads, from a run of its own: reading the clock slows
-    /// engines down. Zero for phases that the engine has not or does not time.
+    /// The time a step in every phase, in nanoseconds, summed over threads, from a run of its own: reading the clock
+    /// slows engines down. Zero for phases that the engine has not or does not time.
     pub phases: [f64; Phase::ALL.len()],
     /// How much faster it is than the baseline, if that was measured.
     pub relative: Option<Relative>,
@@ -121,8 +121,8 @@ struct Lane<'w> {
 ///
 /// # Errors
 ///
-/// An engine that fails, and engines that give different results. One that cannot take the scene, or needs a GPU where the
-/// gear has none, is [`Skipped`].
+/// An engine that fails, and engines that give different results. One that cannot take the scene, or needs a GPU where
+/// the gear has none, is [`Skipped`].
 pub fn measure(
     work: &Work,
     contenders: &[Contender],

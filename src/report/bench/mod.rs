@@ -1,43 +1,24 @@
 //! Engines side by side on the same work.
 //!
-//! All engines run in one process on the same traces, again and again, each time in another order, so that what else the
-//! machine does falls on all of them alike. Medians are reported with their spread, and the speed of every engine relative
-//! to the note's listing in the same repeat. Engines that are too slow for all the work run on part of it: the first few
-//! traces, or the first steps of them where an engine needs many at once.
+//! All engines run in one process on the same traces, again and again, each time in another order, so that what else
+//! the machine does falls on all of them alike. Medians are reported with their spread, and the speed of every engine
+//! relative to the note's listing in the same repeat. Engines that are too slow for all the work run on part of it: the
+//! first few traces, or the first steps of them where an engine needs many at once.
 //!
-//! What they give is compared as it comes: engines that promise the same events must have given them, and a bench in which
-//! they did not reports nothing.
+//! What they give is compared as it comes: engines that promise the same events must have given them, and a bench in
+//! which they did not reports nothing.
 
 mod agreement;
 mod contender;
+mod error;
 mod measure;
 mod runner;
 mod setting;
 
-use crate::engine::EngineError;
-use crate::scene::AnchorError;
-use crate::trace::Violation;
-
 pub use agreement::Disagreement;
 pub use contender::{CONTENDERS, Contender, Gear};
 pub(super) use contender::{CPU, FAST, FUNNEL, FUNNEL_FINAL, GPU, NOTE, NOTE_FURTHEST, REFERENCE};
+pub use error::BenchError;
 pub(super) use measure::order;
 pub use measure::{Measured, Plan, Progress, Row, Skipped, measure};
 pub use setting::{BenchScene, Setting, Sweep, SweepError, Work};
-
-/// Why a bench reports nothing.
-#[derive(Debug, thiserror::Error)]
-pub enum BenchError {
-    /// An engine failed.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// Two engines gave different results.
-    #[error(transparent)]
-    Disagreement(#[from] Disagreement),
-    /// The rope cannot be tied.
-    #[error(transparent)]
-    Anchor(#[from] AnchorError),
-    /// A walk crosses a wall, which none should.
-    #[error(transparent)]
-    Violation(#[from] Violation),
-}

@@ -11,8 +11,8 @@ use crate::trace::SettledTrace;
 /// By how much a sample grows at most while the right size is looked for: costs a step change with the batch.
 const GROWTH: f64 = 8.0;
 
-/// How many traces make a fair round. Engines that evaluate in rounds would be misjudged on fewer, since a round has costs of
-/// its own; where all steps of so many take too long, they run on their first steps instead.
+/// How many traces make a fair round. Engines that evaluate in rounds would be misjudged on fewer, since a round has
+/// costs of its own; where all steps of so many take too long, they run on their first steps instead.
 const FAIR_ROUND: usize = 1024;
 
 /// The fewest first steps on which such engines run: windows must have room to grow, and ropes something to wrap. Where
@@ -25,8 +25,8 @@ const SHORTEST: f64 = 0.1;
 /// How often all traces are evaluated in one run at most.
 const MOST_TIMES: usize = 10_000;
 
-/// A contender with its engine open, and the sample of the work on which it runs: the first traces, and all their steps or
-/// the first.
+/// A contender with its engine open, and the sample of the work on which it runs: the first traces, and all their steps
+/// or the first.
 pub(super) struct Runner<'w> {
     pub contender: Contender,
     work: &'w Work,
@@ -78,8 +78,8 @@ impl<'w> Runner<'w> {
         Ok(())
     }
 
-    /// Makes the sample `growth` times as large: first as many traces as make a fair round, then all their steps, then all
-    /// traces.
+    /// Makes the sample `growth` times as large: first as many traces as make a fair round, then all their steps, then
+    /// all traces.
     fn grow(&mut self, growth: f64) {
         let larger = |size: usize| (size as f64 * growth).ceil() as usize;
         let (all, steps) = (self.work.traces.len(), self.steps_a_trace());
@@ -145,8 +145,8 @@ impl<'w> Runner<'w> {
         Ok(Run { ns_per_step: took.as_nanos() as f64 / self.steps() as f64, records })
     }
 
-    /// Evaluates the sample, the making of all that the engine makes of the scene included. Freeing old records is no part
-    /// of the time.
+    /// Evaluates the sample, the making of all that the engine makes of the scene included. Freeing old records is no
+    /// part of the time.
     fn evaluate(&mut self, job: &Job) -> Result<(Duration, Vec<TraceRecord>), EngineError> {
         let traces = &self.short.as_ref().unwrap_or(&self.work.traces)[..self.traces];
         self.engine.forget();

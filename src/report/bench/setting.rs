@@ -30,9 +30,9 @@ impl BenchScene {
         }
     }
 
-    /// The length of a step that is walked unless told otherwise, in the scene's unit. In a scene of one's own that is a
-    /// tenth of the mean distance between walls, by the area of the scene's box and the number of walls: about what it
-    /// is in random scenes.
+    /// The length of a step that is walked unless told otherwise, in the scene's unit. In a scene of one's own that is
+    /// a tenth of the mean distance between walls, by the area of the scene's box and the number of walls: about what
+    /// it is in random scenes.
     pub fn step(&self) -> f64 {
         match self {
             BenchScene::BuiltIn(scene) => scene.step(),
@@ -116,7 +116,8 @@ impl Work {
 /// What a sweep changes from setting to setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sweep {
-    /// The number of vertices, in random scenes of 50 to 17,353 walls. The step shrinks as the distances between walls do.
+    /// The number of vertices, in random scenes of 50 to 17,353 walls. The step shrinks as the distances between walls
+    /// do.
     Vertices,
     /// The number of traces that are evaluated at once.
     Batch,
@@ -135,8 +136,8 @@ pub enum SweepError {
 }
 
 impl Sweep {
-    /// The numbers of walls of a sweep over n: about half an order of magnitude apart, up to as many as the largest real
-    /// scene that the method was tried on has ends, 34,706.
+    /// The numbers of walls of a sweep over n: about half an order of magnitude apart, up to as many as the largest
+    /// real scene that the method was tried on has ends, 34,706.
     const WALLS: [u32; 6] = [50, 160, 500, 1600, 5000, 17353];
     const BATCHES: [u64; 7] = [1, 4, 16, 64, 256, 1024, 4096];
     /// In units of the step that was asked for.

@@ -26,27 +26,27 @@ pub struct Filter {
     pub tried: u64,
     /// How many of them it named.
     pub named: u64,
-    /// How many of those named lie in their query's triangle before it is grown, as far as f64 tells: the others were named in
-    /// vain because f32 is trusted no further.
+    /// How many of those named lie in their query's triangle before it is grown, as far as f64 tells: the others were
+    /// named in vain because f32 is trusted no further.
     pub covered: u64,
-    /// How many of those tried lie in a triangle that the rope's last leg sweeps on one of the query's legs, exactly. A query
-    /// of several legs covers more than these.
+    /// How many of those tried lie in a triangle that the rope's last leg sweeps on one of the query's legs, exactly. A
+    /// query of several legs covers more than these.
     pub inside: u64,
     /// How many of these it did not name.
     pub missed: u64,
 }
 
 impl Filter {
-    /// Which share of the vertices named is outside their query's triangle, and named because of its margin; 0 where none was
-    /// named.
+    /// Which share of the vertices named is outside their query's triangle, and named because of its margin; 0 where
+    /// none was named.
     pub fn false_share(&self) -> f64 {
         if self.named == 0 { 0.0 } else { (self.named - self.covered) as f64 / self.named as f64 }
     }
 
-    /// The queries of `traces`, in windows from event to event as engines fold them, each about the vertices that the pivot
-    /// sees; without those that go on from the middle of a leg in which something happened. The traces keep to the rules, start
-    /// at the anchor and touch no wall, as those of [`settled_walks`](crate::example::settled_walks) do. On all cores; every
-    /// vertex tried is compared with every leg, exactly.
+    /// The queries of `traces`, in windows from event to event as engines fold them, each about the vertices that the
+    /// pivot sees; without those that go on from the middle of a leg in which something happened. The traces keep to
+    /// the rules, start at the anchor and touch no wall, as those of [`settled_walks`](crate::example::settled_walks)
+    /// do. On all cores; every vertex tried is compared with every leg, exactly.
     ///
     /// # Errors
     ///
@@ -88,7 +88,7 @@ fn of_walk(lists: &Lists, trace: &SettledTrace, record: &TraceRecord) -> Filter 
     let (model, points) = (lists.model(), trace.points());
     let mut pivots = Vec::with_capacity(points.len());
     replay(model.anchor(), model.vertices(), points.len(), &record.events, |_, rope| {
-        pivots.push(rope.contacts().last().map_or(model.vertices().len() as u32, |c| c.vertex));
+        pivots.push(model.pivot(rope.contacts().last().map(|c| c.vertex)));
     });
     let mut happens = vec![false; points.len()];
     record.events.iter().for_each(|event| happens[event.step as usize] = true);
@@ -96,12 +96,12 @@ fn of_walk(lists: &Lists, trace: &SettledTrace, record: &TraceRecord) -> Filter 
     while at + 1 < points.len() {
         let most = width.min(WINDOW).min(points.len() - 1 - at);
         let legs = (1..most).find(|leg| happens[at + leg]).unwrap_or(most);
-        let at_pivot = model.vertices().get(pivots[at] as usize).copied().unwrap_or(model.anchor());
+        let at_pivot = model.position(pivots[at]);
         let asked = &points[at..=at + legs];
         let (legs, query) = asked_of(lists, at_pivot, asked, &mut slopes);
         let list = lists.of(pivots[at], f64::INFINITY).expect("lists are made at once");
         let mut named = Vec::new();
-        list.sweep(Simd::detected(), &query, list.len(), &mut named);
+        Simd::detected().sweep(&list, &query, list.len(), &mut named);
         filter.count(list.numbers().map(|v| {
             let p = model.vertices()[v as usize];
             let is_inside = (0..legs).any(|leg| holds([at_pivot, asked[leg], asked[leg + 1]], p));
@@ -137,7 +137,8 @@ fn covers(query: &Query, frame: &Frame, p: DVec2) -> bool {
     })
 }
 
-/// Whether `p` lies in the closed triangle, exactly. Where it has no area, that is the segment between its outermost corners.
+/// Whether `p` lies in the closed triangle, exactly. Where it has no area, that is the segment between its outermost
+/// corners.
 fn holds([a, b, c]: [DVec2; 3], p: DVec2) -> bool {
     let (low, high) = (lower(lower(a, b), c), higher(higher(a, b), c));
     if !(p.cmpge(low).all() && p.cmple(high).all()) {

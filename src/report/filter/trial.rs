@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::{Filter, Truth, covers, holds};
-use crate::candidates::{Found, Frame, List, Query, ROOM, Simd, Slopes, Window};
+use crate::candidates::{DevicePlace, Found, Frame, List, ListKey, Query, ROOM, Rank, Simd, Slopes, Window};
 use crate::example::Draws;
 use crate::geometry::{check_point, opposite, orient, same_side};
 use crate::gpu::{GpuError, GpuPass};
@@ -12,11 +12,12 @@ use crate::scene::{Model, Scene};
 /// How many queries a trial has.
 pub const QUERIES: usize = 512;
 
-/// How many vertices a query tries at most: as many as it can name, and an even number, since lists begin at even places.
+/// How many vertices a query tries at most: as many as it can name, and an even number, since lists begin at even
+/// places.
 const VERTICES: usize = ROOM - 1;
 
-/// A scene of some size somewhere in the plane, with [`QUERIES`] queries of up to 14 vertices each, and which of them lie in
-/// the swept triangles, by exact signs.
+/// A scene of some size somewhere in the plane, with [`QUERIES`] queries of up to 14 vertices each, and which of them
+/// lie in the swept triangles, by exact signs.
 pub struct Trial {
     asked: Vec<Asked>,
 }
@@ -30,9 +31,9 @@ struct Asked {
 impl Trial {
     /// Trial `number` of a seed. O([`QUERIES`] log [`QUERIES`]), some milliseconds.
     ///
-    /// Triangles are of every shape: between points of the scene, on a small lattice, or up to 2^80 scenes away; legs that
-    /// start on their way; windows of several legs. Scenes have a unit from 2^-200 to 2^200 or lie up to a million of it
-    /// off the origin.
+    /// Triangles are of every shape: between points of the scene, on a small lattice, or up to 2^80 scenes away; legs
+    /// that start on their way; windows of several legs. Scenes have a unit from 2^-200 to 2^200 or lie up to a million
+    /// of it off the origin.
     pub fn new(seed: u64, number: u64) -> Self {
         let mut draws = Draws::new(seed, number);
         let unit = if number.is_multiple_of(2) { 1.0 } else { 2f64.powi(draws.whole(-200, 200) as i32) };
@@ -65,7 +66,7 @@ impl Trial {
         let (mut filter, mut named) = (Filter::default(), Vec::new());
         for Asked { query, list, truths } in &self.asked {
             named.clear();
-            list.sweep(simd, query, list.len(), &mut named);
+            simd.sweep(list, query, list.len(), &mut named);
             filter.count(truths.iter().copied().zip(list.numbers().map(|v| named.contains(&v))));
         }
         filter
@@ -89,9 +90,12 @@ impl Trial {
         }
         pass.forget();
         pass.start_round();
-        let first = pass.place(0, coordinates.len(), || coordinates).expect("the first list of a round finds room");
-        let parts = (first..).step_by(VERTICES);
-        let query = |(asked, first): (&Asked, u32)| Query { first, count: asked.list.len() as u32, ..asked.query };
+        let first = pass
+            .place(ListKey::default(), coordinates.len(), || coordinates)
+            .expect("the first list of a round finds room");
+        let parts = (0..).step_by(VERTICES).map(|rank| first.of(Rank(rank)));
+        let query =
+            |(asked, first): (&Asked, DevicePlace)| Query { first, count: asked.list.len() as u32, ..asked.query };
         let queries: Vec<Query> = self.asked.iter().zip(parts).map(query).collect();
         pass.send(0, &queries, &[]);
         let mut found = vec![Found::default(); queries.len()];
@@ -99,7 +103,7 @@ impl Trial {
         let mut filter = Filter::default();
         for ((Asked { truths, .. }, query), found) in self.asked.iter().zip(&queries).zip(&found) {
             let named = found.places().unwrap_or_default();
-            filter.count(truths.iter().copied().zip((query.first..).map(|place| named.contains(&place))));
+            filter.count(truths.iter().copied().zip((0..).map(|rank| named.contains(&query.first.of(Rank(rank))))));
         }
         Ok(filter)
     }
@@ -175,8 +179,8 @@ fn trace_point(draws: &mut Draws) -> DVec2 {
     }
 }
 
-/// A point on a side of the triangle, or up to 10^-5 of a scene of size `size` off it, to either side; one in eight is at a
-/// corner.
+/// A point on a side of the triangle, or up to 10^-5 of a scene of size `size` off it, to either side; one in eight is
+/// at a corner.
 fn near_side(draws: &mut Draws, corners: [DVec2; 3], size: f64) -> DVec2 {
     let side = draws.whole(0, 2) as usize;
     let (from, to) = (corners[side], corners[(side + 1) % 3]);

@@ -4,8 +4,9 @@ use std::time::{Duration, Instant};
 
 use super::method::Method;
 use super::pareto::mark;
+use super::point::{LengthError, Point};
 use super::setting::{Setting, Variant, Work};
-use super::truth::{Answer, Score, Truth};
+use super::truth::{Score, Truth};
 use super::{TradeoffError, Wanted};
 use crate::engine::{EngineError, Job};
 use crate::report::Spread;
@@ -35,58 +36,6 @@ pub struct Progress {
     pub next: Option<(Method, Setting)>,
 }
 
-/// One method at one setting: what it costs and what it gets wrong.
-#[derive(Debug, Clone)]
-pub struct Point {
-    /// The method's name.
-    pub method: &'static str,
-    /// The engine's, as the command line knows it.
-    pub engine: &'static str,
-    /// What was traded besides.
-    pub setting: Setting,
-    /// The number of vertices of the scene as it was used.
-    pub n: usize,
-    /// On how many traces it ran: all, or the first.
-    pub traces: usize,
-    /// How many steps these have, before any are left out.
-    pub steps: u64,
-    /// The time of each of these steps, in nanoseconds, over the repeats: of the engine alone.
-    pub ns_per_step: Spread,
-    /// How many of the coarser steps would have jumped a wall, and were walked point by point.
-    pub jumps: usize,
-    /// How many of the traces cross a simplified wall.
-    pub crossing_traces: usize,
-    /// On how many traces the list of events differs; `None` for a method that keeps none.
-    pub event_mismatch: Option<usize>,
-    /// On how many the taut rope at the end does.
-    pub final_mismatch: usize,
-    /// The error of the length at the end as a share of it, over the traces.
-    pub length_error: LengthError,
-    /// The mean length at the end.
-    pub length: Answer,
-    /// The mean number of wraps a trace; `None` for a method that keeps no events.
-    pub wraps: Option<Answer>,
-    /// Whether no other point is faster and as right, or as fast and more right: by the median time, the shares of traces whose
-    /// events and whose rope at the end differ, and the mean error of the length. A method that keeps no events has none right.
-    pub pareto: bool,
-}
-
-impl Point {
-    /// The share of the traces of which that many are.
-    pub fn share(&self, traces: usize) -> f64 {
-        traces as f64 / self.traces as f64
-    }
-}
-
-/// The error of a length, as a share of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LengthError {
-    /// Over the traces.
-    pub mean: f64,
-    /// Of the worst.
-    pub max: f64,
-}
-
 /// What could not be measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Failed {
@@ -108,8 +57,8 @@ pub struct Tradeoff {
     pub traces: usize,
     /// See [`traces`](Self::traces).
     pub steps: u64,
-    /// For how many traces, from the first on, the scalar reference itself vouched for the truth; for the others the engine
-    /// `cpu` did, which gave the same records for these.
+    /// For how many traces, from the first on, the scalar reference itself vouched for the truth; for the others the
+    /// engine `cpu` did, which gave the same records for these.
     pub vouched: usize,
     /// By method, then by setting.
     pub points: Vec<Point>,
@@ -136,8 +85,8 @@ struct Lane<'v> {
 ///
 /// # Errors
 ///
-/// A trace that crosses a wall, an engine that fails, and exact methods that differ. What a method or a setting cannot take is
-/// listed in [`Tradeoff::failed`].
+/// A trace that crosses a wall, an engine that fails, and exact methods that differ. What a method or a setting cannot
+/// take is listed in [`Tradeoff::failed`].
 pub fn tradeoff(
     work: &Work,
     wanted: &Wanted,

@@ -1,6 +1,6 @@
 //! Which points are worth taking.
 
-use super::Point;
+use super::point::Point;
 
 /// Marks the points than which no other is better in one respect and as good in the rest.
 pub(super) fn mark(points: &mut [Point]) {

@@ -25,8 +25,8 @@ pub(super) struct Truth<'v> {
 type Happened = (u32, EventKind, [u64; 2], Side);
 
 impl<'v> Truth<'v> {
-    /// By the engine `cpu`, which gives the reference's records; and for the first traces by the reference, as many as take
-    /// about a second.
+    /// By the engine `cpu`, which gives the reference's records; and for the first traces by the reference, as many as
+    /// take about a second.
     ///
     /// # Errors
     ///

@@ -20,7 +20,8 @@ impl<'a> Entity<'a> {
         Fault::new(Place::line(self.line), format!("{}: {what}", self.kind))
     }
 
-    /// The parts of these groups of its own that begin with this code each, in order; what comes before the first is left out.
+    /// The parts of these groups of its own that begin with this code each, in order; what comes before the first is
+    /// left out.
     pub(super) fn split(&self, groups: &[(i32, &'a str)], code: i32) -> Vec<Entity<'a>> {
         let parts = groups.chunk_by(|_, next| next.0 != code).filter(|part| part[0].0 == code);
         parts.map(|part| Entity { groups: part.to_vec(), parts: Vec::new(), ..*self }).collect()

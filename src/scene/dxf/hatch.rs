@@ -203,7 +203,8 @@ fn edge(part: &Entity<'_>) -> Result<Option<Edge>, Unfit> {
 fn arc(part: &Entity<'_>, a: DVec2, b: DVec2, parameter: impl Fn(f64) -> f64) -> Result<Edge, Fault> {
     let [from, to] = [part.number(50)?, part.number(51)?];
     let clockwise = part.text(73).is_some() && part.flags(73)? == 0;
-    // The angles of a clockwise arc are told clockwise. It is drawn the other way, as the ARC is drawn on which it may lie.
+    // The angles of a clockwise arc are told clockwise. It is drawn the other way, as the ARC is drawn on which it may
+    // lie.
     let [from, to] = if clockwise { [360.0 - to, 360.0 - from] } else { [from, to] };
     let (begin, whole) = (parameter(from), turn(from, to) == 360.0);
     let sweep = if whole { 360.0 } else { turn(begin, parameter(to)) };

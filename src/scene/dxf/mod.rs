@@ -1,8 +1,9 @@
-//! Scenes as DXF drawings: lines, polylines, arcs, circles, ellipses, splines and the borders of painted areas are walls, in
-//! blocks too.
+//! Scenes as DXF drawings: lines, polylines, arcs, circles, ellipses, splines and the borders of painted areas are
+//! walls, in blocks too.
 //!
 //! The file is read here: it is pairs of lines, and what is wrong in it, or no wall, is to be named with its line.
 
+mod block;
 mod entity;
 mod hatch;
 mod insert;
@@ -14,12 +15,12 @@ use std::rc::Rc;
 
 use glam::{DAffine2, DVec2};
 
-use super::curves::Outlines;
+use super::outlines::Outlines;
 use super::{Inside, Object, Scene, excerpt, listed, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
+use block::{Block, Clips};
 use entity::{Entities, Entity};
-use insert::{Block, Clips};
 use shapes::{point, upside, width};
 
 /// How many entities and lines there may be beyond those that the file itself has room for: by INSERT.
@@ -30,8 +31,8 @@ const ANCHOR: &str = "anchor";
 
 /// Reads a drawing in ASCII DXF. Its coordinates are x and y of the model space; z is passed over.
 ///
-/// What lies on a layer that is off or frozen, what is invisible and what lies in the paper space is no wall; nor is what is
-/// inserted on a frozen layer, whatever layer it is on itself. Entities of other kinds are counted.
+/// What lies on a layer that is off or frozen, what is invisible and what lies in the paper space is no wall; nor is
+/// what is inserted on a frozen layer, whatever layer it is on itself. Entities of other kinds are counted.
 pub(super) fn parse(bytes: &[u8], flatten: Option<f64>) -> Result<Scene, Fault> {
     if bytes.starts_with(b"AutoCAD Binary DXF") {
         return Err(Fault::new(Place::default(), "binary DXF is not read; save the drawing as ASCII DXF"));

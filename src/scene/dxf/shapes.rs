@@ -12,8 +12,8 @@ use crate::read_error::Fault;
 /// A bulge below this is none: the arc lies nearer to its chord than this part of the chord's length.
 pub(super) const BULGE_MIN: f64 = 1e-9;
 
-/// Draws an entity, or says under which name it is passed over if it is of a kind that is not drawn. Of what has no extent it
-/// draws nothing.
+/// Draws an entity, or says under which name it is passed over if it is of a kind that is not drawn. Of what has no
+/// extent it draws nothing.
 pub(super) fn draw<'a>(entity: &Entity<'a>, pen: &mut Pen<'_>) -> Result<Option<&'a str>, Fault> {
     let drawn = match entity.kind {
         "LINE" => {

@@ -74,7 +74,8 @@ fn fault(e: &serde_json::Error, feature: Option<usize>) -> Fault {
     // An empty list in place of a polygon says nothing of how deep it is.
     let right = match message.contains("coordinates dimensions") {
         true => {
-            "; its coordinates must be nested as deep as its type says, and none may be an empty list in place of a polygon"
+            "; its coordinates must be nested as deep as its type says, and none may be an empty list in place of a \
+             polygon"
         }
         false => "",
     };

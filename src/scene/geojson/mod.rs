@@ -18,9 +18,10 @@ use properties::Kept;
 
 /// Reads a FeatureCollection, a Feature or a bare geometry.
 ///
-/// LineString, LinearRing, MultiLineString, Polygon and MultiPolygon give one wall for each pair of consecutive positions;
-/// points that are no anchor are passed over. The member `"y": "down"` of a FeatureCollection says so. Further numbers of a
-/// position (its altitude) are passed over too. Walls can be chosen by what the properties called `keys` say.
+/// LineString, LinearRing, MultiLineString, Polygon and MultiPolygon give one wall for each pair of consecutive
+/// positions; points that are no anchor are passed over. The member `"y": "down"` of a FeatureCollection says so.
+/// Further numbers of a position (its altitude) are passed over too. Walls can be chosen by what the properties called
+/// `keys` say.
 pub(super) fn parse(text: &str, keys: &BTreeSet<&str>) -> Result<Scene, Fault> {
     let document = document::parse(text)?;
     let mut found = Found { keys: keys.clone(), ..Found::default() };
@@ -106,7 +107,8 @@ impl Found<'_> {
                 let is_point = matches!(geometry.value, GeometryValue::Point { .. });
                 if let Some(how) = properties::almost_anchor(feature).filter(|_| is_point && !is_anchor) {
                     self.notes.push(format!(
-                        "feature {number} is a point with {how} and is not taken for the anchor: that has \"role\": \"anchor\""
+                        "feature {number} is a point with {how} and is not taken for the anchor: that has \"role\": \
+                         \"anchor\""
                     ));
                 }
                 self.geometry(geometry, &place, is_anchor.then_some(number))?;

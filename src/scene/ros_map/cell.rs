@@ -2,7 +2,7 @@
 
 use super::super::Ros;
 use super::super::image::Pixel;
-use super::{Map, Mode};
+use super::map::{Map, Mode};
 
 /// What a cell is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,7 +53,8 @@ impl Map {
         }
     }
 
-    /// Colours count by their mean; in the mode `trinary` alpha is one of them. What lies on a threshold is beyond neither.
+    /// Colours count by their mean; in the mode `trinary` alpha is one of them. What lies on a threshold is beyond
+    /// neither.
     fn of_old(&self, pixel: Pixel) -> Cell {
         // Its images have 8 bits, of which the lower ones were cut off.
         let bytes = pixel.colours.map(|c| f64::from(c >> 8));
@@ -149,7 +150,8 @@ mod tests {
         // What rounds to 100 is occupied; ROS 1 goes up to 99 between the thresholds.
         assert_eq!(with(["1.0", "0.0"], "scale", Ros::Two), [Occupied, Occupied, Other, Other, Other]);
         assert_eq!(with(["1.0", "0.0"], "scale", Ros::One), [Other; 5]);
-        // In f32 a fifth less than all of it is a little less than a fifth; nothing is free and occupied in ROS 1 alone.
+        // In f32 a fifth less than all of it is a little less than a fifth; nothing is free and occupied in ROS 1
+        // alone.
         assert_eq!(with(["0.2", "0.1"], "trinary", Ros::Two)[3], Unknown);
         assert_eq!(with(["0.5", "0.2"], "trinary", Ros::Two)[3], Other);
         assert_eq!(with(["0.5", "0.2"], "trinary", Ros::One)[3], Unknown);

@@ -45,7 +45,8 @@ const PLACES: [&str; 22] = [
 
 /// Refuses a file whose entities would make its text much longer: some bytes can stand for gigabytes. O(length).
 ///
-/// Whether a reference stands in a comment is not asked, nor is which of two declarations counts: the longer one does here.
+/// Whether a reference stands in a comment is not asked, nor is which of two declarations counts: the longer one does
+/// here.
 pub(super) fn check_entities(text: &str) -> Result<(), Fault> {
     let declared: Vec<(&str, &str)> = text.split("<!ENTITY").skip(1).filter_map(declaration).collect();
     if declared.len() > ENTITIES_MAX {
@@ -110,10 +111,12 @@ fn length<'a>(
 /// How many attributes an element may have: the parser compares each with all others.
 const ATTRIBUTES_MAX: usize = 1 << 10;
 
-/// How much may be done about namespaces: where elements declare some, their number with all that they inherit, squared.
+/// How much may be done about namespaces: where elements declare some, their number with all that they inherit,
+/// squared.
 const NAMESPACES_MAX: u64 = 1 << 28;
 
-/// Refuses tags about which the parser would think for hours: of very many attributes, or namespaces within namespaces. O(length).
+/// Refuses tags about which the parser would think for hours: of very many attributes, or namespaces within namespaces.
+/// O(length).
 pub(super) fn check_tags(text: &str) -> Result<(), Fault> {
     let fault = |at: usize, what: String| {
         let line = text[..at].matches('\n').count() as u64 + 1;

@@ -2,7 +2,7 @@
 
 use roxmltree::Node;
 
-use super::INKSCAPE;
+use super::namespaces::INKSCAPE;
 
 /// How many characters of a label are kept.
 const LENGTH_MAX: usize = 200;

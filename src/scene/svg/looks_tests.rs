@@ -1,8 +1,9 @@
 //! What drawings look like to their own programs: paint, styles, viewports, and names.
 
 use super::super::{Inside, Scene};
+use super::namespaces::{INKSCAPE, SVG};
+use super::parse;
 use super::tests::{scene, walls};
-use super::{INKSCAPE, SVG, parse};
 
 /// What is said of `inside`, without what is said of every drawing.
 fn notes(inside: &str) -> Vec<String> {
@@ -245,8 +246,8 @@ fn shapes_without_length_are_dropped_and_counted() {
 #[test]
 fn what_is_nearly_called_anchor_is_told_of() {
     let note = |inside: &str| notes(inside).into_iter().find(|note| note.contains("anchor"));
-    let expected = "<circle> in line 2 is called \"Anchor\" and is taken for what it draws; the id or label that marks the \
-        anchor is \"anchor\"";
+    let expected = "<circle> in line 2 is called \"Anchor\" and is taken for what it draws; the id or label that marks \
+        the anchor is \"anchor\"";
     assert_eq!(note("<circle id='Anchor' r='1'/>").as_deref(), Some(expected));
     assert_eq!(note("<circle id='c5' inkscape:label='Anchor' r='1'/>").as_deref(), Some(expected));
     for called in ["ANCHOR", "anchor1", "anchors", "Anchor point", " anchor"] {

@@ -1,17 +1,19 @@
 //! Scenes as SVG drawings: what is drawn is a wall, along its outline.
 //!
 //! Coordinates are those of the outermost viewBox, y downwards as in the file. The crates that read XML, style sheets
-//! and SVG's own notations are those that `usvg` stands on. `usvg` itself computes in f32 and passes over what it cannot
-//! read, so the tree is walked here.
+//! and SVG's own notations are those that `usvg` stands on. `usvg` itself computes in f32 and passes over what it
+//! cannot read, so the tree is walked here.
 
 mod bounds;
 mod css_transform;
 mod label;
 mod length;
+mod namespaces;
 mod notes;
 mod page;
 mod paint;
 mod path;
+mod properties;
 mod shapes;
 mod sheet;
 mod style;
@@ -23,19 +25,16 @@ use std::collections::HashMap;
 use glam::{DAffine2, DVec2};
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::curves::Outlines;
+use super::outlines::Outlines;
 use super::{Object, Scene, excerpt, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
+use namespaces::{INKSCAPE, SVG};
 use notes::Counts;
 use page::viewport_of;
 use paint::Paint;
 use shapes::{SHAPES, Shape};
 use style::{Style, Styles};
-
-const SVG: &str = "http://www.w3.org/2000/svg";
-const XLINK: &str = "http://www.w3.org/1999/xlink";
-const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
 /// How deep elements may lie in each other, those that they use included.
 const DEPTH_MAX: usize = 128;
@@ -69,9 +68,9 @@ const DEFINITIONS: [&str; 20] = [
 
 /// Reads a drawing.
 ///
-/// path, line, polyline, polygon, rect, circle and ellipse are walls, in groups and used ones too. What is hidden or not
-/// painted is none; texts and images are none and are counted. The element with the id or the Inkscape label `anchor` marks
-/// the anchor by its middle, painted or not.
+/// path, line, polyline, polygon, rect, circle and ellipse are walls, in groups and used ones too. What is hidden or
+/// not painted is none; texts and images are none and are counted. The element with the id or the Inkscape label
+/// `anchor` marks the anchor by its middle, painted or not.
 pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
     bounds::check_entities(text)?;
     bounds::check_tags(text)?;

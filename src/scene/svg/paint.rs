@@ -113,8 +113,8 @@ impl Paint {
         !matches!(self.stroke, Ink::None | Ink::Unsaid) && self.stroke_opaque && self.opaque && self.stroke_width > 0.0
     }
 
-    /// Whether a shape is painted at all. One that is filled counts as painted even if it has no area, but for a `line` of
-    /// which it is said that its stroke is none.
+    /// Whether a shape is painted at all. One that is filled counts as painted even if it has no area, but for a `line`
+    /// of which it is said that its stroke is none.
     pub(super) fn shows(&self, line: bool) -> bool {
         self.strokes() || (self.fills() && !(line && self.stroke != Ink::Unsaid))
     }

@@ -133,7 +133,7 @@ mod tests {
     use glam::DAffine2;
 
     use super::super::super::Wall;
-    use super::super::super::curves::Outlines;
+    use super::super::super::outlines::Outlines;
     use super::*;
 
     fn walls(data: &str, tolerance: f64) -> Vec<[f64; 4]> {

@@ -142,8 +142,8 @@ fn in_quotes(text: &str) -> Option<&str> {
     inside[1..].strip_suffix(quote).filter(|data| !data.contains(quote))
 }
 
-/// A rectangle with rounded corners, from its upper left one on. Where corners meet, along x or along y, there is no straight
-/// line between them.
+/// A rectangle with rounded corners, from its upper left one on. Where corners meet, along x or along y, there is no
+/// straight line between them.
 fn rounded(pen: &mut Pen<'_>, [low, high]: [DVec2; 2], radii: DVec2, met: [bool; 2]) -> Drawn {
     let [a, b] = [DVec2::new(radii.x, 0.0), DVec2::new(0.0, radii.y)];
     let middle = (low + high) / 2.0;
@@ -174,7 +174,7 @@ mod tests {
     use roxmltree::Document;
 
     use super::super::super::Wall;
-    use super::super::super::curves::Outlines;
+    use super::super::super::outlines::Outlines;
     use super::super::style::Styles;
     use super::*;
 

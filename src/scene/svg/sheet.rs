@@ -6,7 +6,7 @@ use std::rc::Rc;
 use simplecss::Selector;
 
 use super::super::excerpt;
-use super::style::property;
+use super::properties::property;
 
 /// A rule for the elements that its selector matches.
 pub(super) struct Rule<'a> {
@@ -150,7 +150,8 @@ fn trimmed(mut text: &str) -> &str {
     }
 }
 
-/// `text` before the first of `marks` outside brackets, strings and comments, and which it is; all of it if there is none.
+/// `text` before the first of `marks` outside brackets, strings and comments, and which it is; all of it if there is
+/// none.
 fn until<'a>(text: &'a str, marks: &str) -> (&'a str, Option<char>) {
     let (mut open, mut quote) = (0usize, None);
     let mut chars = text.char_indices();

@@ -6,51 +6,9 @@ use std::rc::Rc;
 use roxmltree::{Document, Node};
 use simplecss::{AttributeOperator, Element, PseudoClass};
 
-use super::SVG;
+use super::namespaces::SVG;
+use super::properties::PROPERTIES;
 use super::sheet::{self, Rule, Unread};
-
-/// The properties that matter, and whether an attribute of the same name says the same.
-const PROPERTIES: [(&str, bool); 34] = [
-    ("clip-path", true),
-    ("cx", true),
-    ("cy", true),
-    ("d", true),
-    ("display", true),
-    ("fill", true),
-    ("fill-opacity", true),
-    ("fill-rule", true),
-    ("height", true),
-    ("marker", false),
-    ("marker-end", true),
-    ("marker-mid", true),
-    ("marker-start", true),
-    ("mask", true),
-    ("offset", false),
-    ("offset-path", false),
-    ("opacity", true),
-    ("overflow", true),
-    ("r", true),
-    ("rotate", false),
-    ("rx", true),
-    ("ry", true),
-    ("scale", false),
-    ("stroke", true),
-    ("stroke-opacity", true),
-    ("stroke-width", true),
-    ("transform", true),
-    ("transform-box", true),
-    ("transform-origin", true),
-    ("translate", false),
-    ("visibility", true),
-    ("width", true),
-    ("x", true),
-    ("y", true),
-];
-
-/// The property of this name, in any case, if it matters.
-pub(super) fn property(name: &str) -> Option<&'static str> {
-    PROPERTIES.iter().map(|p| p.0).find(|p| p.eq_ignore_ascii_case(name))
-}
 
 /// What a property is to be, and whether a style says so or an attribute: they are written differently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -207,12 +165,14 @@ mod tests {
     fn the_cascade_decides() {
         let text = r##"<svg>
             <style>.off { display: none } #on { display: inline } g > .pale { visibility: hidden; fill: red }
-                .cut { clip-path: url(#c) } .firm { display: none !important } .moved { transform: rotate(3deg) }</style>
+                .cut { clip-path: url(#c) } .firm { display: none !important }
+                .moved { transform: rotate(3deg) }</style>
             <style media="print">e { display: none }</style>
             <a class="off"/><b class="off" id="on"/><c class="off" style="fill:red;DISPLAY:inline"/>
             <g><d class="pale x"/></g><e class="cut"/><f class="firm" style="display:inline"/>
             <h display="none"/><i display="none" style="display:block"/><j style="visibility:visible" mask="none"/>
-            <l class="moved" transform="scale(2)"/><m style="marker:none" marker-end="url(#m)"/><n style="r:unset" r="1"/></svg>"##;
+            <l class="moved" transform="scale(2)"/><m style="marker:none" marker-end="url(#m)"/>
+            <n style="r:unset" r="1"/></svg>"##;
         let document = Document::parse(text).unwrap();
         let styles = Styles::of(&document);
         let said = |name: &str| {

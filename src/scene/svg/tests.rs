@@ -1,5 +1,6 @@
 //! Drawings as a whole; what each part of them means is tested where it is read.
 
+use super::namespaces::XLINK;
 use super::*;
 
 pub(super) fn scene(inside: &str) -> Result<Scene, String> {

@@ -10,10 +10,11 @@ use super::super::curves::Piece;
 use super::super::excerpt;
 use super::super::extent::extent;
 use super::length::Along;
+use super::namespaces::XLINK;
 use super::page::view_box;
 use super::shapes::{SHAPES, Shape};
 use super::style::Style;
-use super::{Context, DEPTH_MAX, Reader, XLINK, fault_at, label, transform};
+use super::{Context, DEPTH_MAX, Reader, fault_at, label, transform};
 use crate::read_error::Fault;
 
 /// By which part of a viewport's size something may reach beyond it before that is told: roundings do.

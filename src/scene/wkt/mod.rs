@@ -19,8 +19,8 @@ use statements::Statements;
 
 /// Reads geometries one after the other, each with or without `SRID=...;` before it.
 ///
-/// LINESTRING, MULTILINESTRING, POLYGON and MULTIPOLYGON give one wall for each pair of consecutive positions. A POINT is
-/// the anchor if the file has exactly one. Z and M are passed over, as are lines that start with `#` or `--`.
+/// LINESTRING, MULTILINESTRING, POLYGON and MULTIPOLYGON give one wall for each pair of consecutive positions. A POINT
+/// is the anchor if the file has exactly one. Z and M are passed over, as are lines that start with `#` or `--`.
 pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     let mut found = Found::default();
     let mut statements = Statements::new(text);
@@ -52,8 +52,8 @@ pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
     found.scene()
 }
 
-/// The same with a sign before each NaN and infinity, as programs write an altitude that they do not know: the parser takes
-/// them for numbers only then.
+/// The same with a sign before each NaN and infinity, as programs write an altitude that they do not know: the parser
+/// takes them for numbers only then.
 fn with_signs(text: &str) -> Cow<'_, str> {
     let is_end = |b: u8| b.is_ascii_whitespace() || matches!(b, b'(' | b')' | b',');
     let mut signed = String::new();
@@ -241,15 +241,20 @@ mod tests {
             (format!("{line}\nPOINT (0 -1e999)"), "line 3: -inf is not a finite number".into()),
             (
                 "MULTIPOLYGON (((0 0, 1 0, 0 0), (0 0, 1 0, 1 1)))".into(),
-                "line 1, polygon 0, ring 1: the ring is open: it starts at (0, 0) and ends at (1, 1); the last position \
-                 must repeat the first"
+                "line 1, polygon 0, ring 1: the ring is open: it starts at (0, 0) and ends at (1, 1); the last \
+                 position must repeat the first"
                     .into(),
             ),
             (
                 "GEOMETRYCOLLECTION (POINT (0 0), LINESTRING (0 0))".into(),
                 "line 1, geometry 1: one position only; a line needs two or more".into(),
             ),
-            ("".into(), ": no geometry; a scene is made of LINESTRING, MULTILINESTRING, POLYGON and MULTIPOLYGON".into()),
+            (
+                "".into(),
+                ": no geometry; a scene is made of LINESTRING, MULTILINESTRING, POLYGON and \
+                MULTIPOLYGON"
+                    .into(),
+            ),
             (
                 format!("{line}SRID=x;{line}"),
                 "line 2: \"SRID=x;LINESTRING (0 0, 1 0.5)\\n\"; write SRID=4326; for one".into(),

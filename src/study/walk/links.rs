@@ -65,7 +65,7 @@ impl Links {
         self.links[v as usize].get_or_init(|| {
             let at = self.model.vertices()[v as usize];
             let mut seen = Vec::new();
-            self.visibility.look(v, scratch, &mut seen);
+            self.visibility.look(self.model.pivot(Some(v)), scratch, &mut seen);
             let link = |to: u32| {
                 let there = self.model.vertices()[to as usize];
                 let leaves = self.sides(v, [at, there]);
@@ -80,7 +80,7 @@ impl Links {
     /// The wall ends to which a path can go straight from the anchor, with the sides there.
     pub(super) fn after_anchor(&self, scratch: &mut Scratch) -> Vec<(u32, Sides)> {
         let mut seen = Vec::new();
-        self.visibility.look(self.model.vertices().len() as u32, scratch, &mut seen);
+        self.visibility.look(self.model.pivot(None), scratch, &mut seen);
         let at = self.model.anchor();
         seen.into_iter().filter_map(|v| self.seen_from(at, v, false)).collect()
     }
