@@ -3,11 +3,10 @@
 use rustc_hash::FxHashMap as HashMap;
 use serde::{Deserialize, Serialize};
 
-use super::follow::{Held, Span, follow};
 use super::ropes::{Key, Ropes};
 use super::setting::Setting;
 use super::{Counts, Moments, SCALARS};
-use crate::rope::{EventKind, Side, TraceRecord};
+use crate::rope::{EventKind, Lasting, Side, TraceRecord, spans};
 use crate::trace::SettledTrace;
 
 /// A trace and what became of it.
@@ -113,40 +112,37 @@ impl Block {
         let ends = trace.ends();
         // The limits that are exceeded at some time, and the first of them that was not yet.
         let (exceeded, mut next) = (setting.limits.partition_point(|&limit| limit < record.max_length), 0);
-        let contact_cells = setting.cells.as_ref();
-        let span = |span: Span| {
-            let length = |step: u64| span.length + ends[step as usize].distance(span.pivot);
-            if next < exceeded {
-                for step in span.steps.clone() {
-                    while next < exceeded && length(step) > setting.limits[next] {
-                        let gone = setting.times.partition_point(|&time| time < step) as u64;
-                        *counts.exceeded[next].entry(gone).or_default() += 1;
-                        next += 1;
+        spans(model.anchor(), model.vertices(), record.steps, &record.events, |lasting| match lasting {
+            Lasting::Rope(rope, steps) => {
+                if next < exceeded {
+                    for step in steps.clone() {
+                        while next < exceeded && rope.length(ends[step as usize]) > setting.limits[next] {
+                            let gone = setting.times.partition_point(|&time| time < step) as u64;
+                            *counts.exceeded[next].entry(gone).or_default() += 1;
+                            next += 1;
+                        }
+                    }
+                }
+                if let Some(grid) = &setting.cells {
+                    let first = steps.start.next_multiple_of(setting.every);
+                    for step in (first..steps.end).step_by(setting.every as usize) {
+                        if let Some(cell) = grid.of(ends[step as usize]) {
+                            let [visits, lengths, _] = cells.entry(cell).or_default();
+                            *visits += 1;
+                            *lengths += (rope.length(ends[step as usize]) / setting.unit + 0.5) as u64;
+                        }
                     }
                 }
             }
-            if let Some(grid) = &setting.cells {
-                let first = span.steps.start.next_multiple_of(setting.every);
-                for step in (first..span.steps.end).step_by(setting.every as usize) {
-                    if let Some(cell) = grid.of(ends[step as usize]) {
-                        let [visits, lengths, _] = cells.entry(cell).or_default();
-                        *visits += 1;
-                        *lengths += (length(step) / setting.unit + 0.5) as u64;
-                    }
+            Lasting::Contact { vertex, steps } => {
+                let [wraps, held] = touched.entry(vertex).or_default();
+                *wraps += 1;
+                *held += steps;
+                if let Some(cell) = setting.cells.and_then(|grid| grid.of(model.vertices()[vertex as usize])) {
+                    cells.entry(cell).or_default()[2] += steps;
                 }
             }
-        };
-        let mut contacts: Vec<(u32, u64)> = Vec::new();
-        let left = |held: Held, steps| contacts.push((held.vertex, steps));
-        follow(model.anchor(), model.vertices(), record.steps, &record.events, span, left);
-        for (vertex, steps) in contacts {
-            let [wraps, held] = touched.entry(vertex).or_default();
-            *wraps += 1;
-            *held += steps;
-            if let Some(cell) = contact_cells.and_then(|grid| grid.of(model.vertices()[vertex as usize])) {
-                cells.entry(cell).or_default()[2] += steps;
-            }
-        }
+        });
     }
 }
 

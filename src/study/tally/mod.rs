@@ -6,7 +6,6 @@
 mod batches;
 mod block;
 mod counts;
-mod follow;
 mod lengths;
 mod moments;
 mod ropes;
