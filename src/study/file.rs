@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use super::file_places::{explain, located, vanishing};
 use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
+use super::tally::Tallies;
 use crate::geometry::{check_point, number};
 use crate::read_file::{SETTINGS_MAX, read_text};
 
@@ -168,19 +169,7 @@ impl Plan {
                 ));
             }
         }
-        let tallies = &self.tallies;
-        if !(tallies.confidence > 0.0 && tallies.confidence < 1.0) {
-            return err(format!("tallies.confidence: {} is not between 0 and 1", number(tallies.confidence)));
-        }
-        if let Some(bad) = tallies.limits.iter().find(|l| !(l.is_finite() && **l >= 0.0)) {
-            return err(format!("tallies.limits: {} is no length", number(*bad)));
-        }
-        if !(tallies.bin.is_finite() && tallies.bin >= 0.0) {
-            return err(format!("tallies.bin: {} is no width", number(tallies.bin)));
-        }
-        if tallies.map > 4096 {
-            return err(format!("tallies.map: at most 4096 cells side by side, not {}", tallies.map));
-        }
+        Tallies::check(&self.tallies)?;
         for (name, value) in [("relative_error", self.until.relative_error), ("seconds", self.until.seconds)] {
             if value.is_some_and(|v| !(v.is_finite() && v > 0.0)) {
                 return err(format!("until.{name}: must be above 0"));

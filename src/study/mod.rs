@@ -4,6 +4,7 @@ mod estimate;
 mod file;
 mod file_places;
 mod free_space;
+mod moments;
 mod opened;
 mod order;
 mod plan;
@@ -11,24 +12,22 @@ mod random;
 mod run;
 mod state;
 mod student;
-mod summarize;
 mod summary;
 mod surroundings;
 mod tally;
 mod walk;
 
+pub use estimate::Estimate;
 pub use file::EXAMPLE;
+pub(crate) use moments::Moments;
 pub use opened::Study;
 pub use plan::{
-    AnchorPlan, AtWalls, OutputPlan, Plan, PlanError, RunPlan, Sampled, ScenePlan, Start, TallyPlan, UntilPlan,
-    WalkPlan,
+    AnchorPlan, AtWalls, OutputPlan, Plan, PlanError, RunPlan, Sampled, ScenePlan, Start, UntilPlan, WalkPlan,
 };
 pub use run::{RunError, Spent, run, run_again};
-pub use state::{Check, Kept, Part, Shard, State, StateError, merge};
-pub use summary::{
-    Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Stopped, Summary, Survival,
-    SurvivalPoint, Traded, quantity,
-};
+pub use state::{Check, Kept, Part, Shard, State, StateError, Stopped, merge};
+pub use summary::Summary;
 pub use surroundings::anchor_warnings;
-pub(crate) use tally::Moments;
+// All answers of tallies, and the plan of their options.
+pub use tally::*;
 pub use walk::Walks;

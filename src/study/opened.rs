@@ -11,7 +11,7 @@ use super::free_space::FreeSpace;
 use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
 use super::random::{Purpose, Random};
 use super::state::Shard;
-use super::tally::Setting;
+use super::tally::{Setting, Tallies};
 use super::walk::Walks;
 use crate::example::BuiltIn;
 use crate::geometry::{Shown, number};
@@ -23,7 +23,7 @@ use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
 /// A study that can be run.
 pub struct Study {
     plan: Plan,
-    pub(super) setting: Setting,
+    pub(super) tallies: Tallies,
     /// The scene as it is with each of its anchors.
     given_models: Vec<Arc<Model>>,
     /// For each anchor; none if the traces are given.
@@ -62,15 +62,9 @@ impl Study {
         let identity = identity(&plan, &models, given.as_deref())?;
         let bounds = models.iter().map(|m| m.bounds()).reduce(|(l, h), (low, high)| (l.min(low), h.max(high)));
         let bounds = bounds.expect("a study has an anchor");
-        let setting = Setting::new(&plan, simplified(&plan, &models)?, bounds);
-        let least = setting.unit;
-        if setting.bin < least {
-            return Err(PlanError::new(format!(
-                "tallies.bin: {} is too narrow for lengths in this scene; give at least {least:e}, or 0 for a usual width",
-                number(setting.bin)
-            )));
-        }
-        Ok(Study { plan, setting, given_models: models, walks, given, identity })
+        let setting = Setting::new(&plan.tallies, simplified(&plan, &models)?, bounds, plan.walk.steps());
+        let tallies = Tallies::new(&plan.tallies, setting)?;
+        Ok(Study { plan, tallies, given_models: models, walks, given, identity })
     }
 
     /// The plan.
@@ -81,7 +75,7 @@ impl Study {
     /// The scene with each of its anchors, as ropes see it: simplified if the plan says so. Trace i has anchor i modulo their
     /// number.
     pub fn models(&self) -> &[Arc<Model>] {
-        &self.setting.models
+        &self.tallies.setting.models
     }
 
     /// A hash of all that the answer depends on: the plan (but for what is written besides the summary), the scene, and the
@@ -151,17 +145,17 @@ impl Study {
 
     /// The scene with the anchor of trace `number`.
     pub fn model(&self, number: u64) -> &Arc<Model> {
-        self.setting.model(number)
+        self.tallies.setting.model(number)
     }
 
     /// A trace that is drawn, as it is drawn.
     fn drawn(&self, number: u64) -> SettledTrace {
-        self.walks[self.setting.anchor(number)].trace(number)
+        self.walks[self.tallies.setting.anchor(number)].trace(number)
     }
 
     /// A trace of the file, as it stands there.
     fn settled(&self, trace: Trace) -> SettledTrace {
-        let model = &self.given_models[self.setting.anchor(trace.id)];
+        let model = &self.given_models[self.tallies.setting.anchor(trace.id)];
         let settled = settle_owned(model, trace);
         let still = settled.still();
         settled.with_walked(Walked { still, met: 0 })

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::file_places::located;
+use super::tally::TallyPlan;
 use crate::engine::Precision;
 use crate::read_file::{SETTINGS_MAX, read_text};
 use crate::scene::{Ros, SceneOptions, Unknown};
@@ -246,30 +247,6 @@ impl RunPlan {
 impl Default for RunPlan {
     fn default() -> Self {
         RunPlan { traces: None, block: 1000, seed: 1, precision: Precision::Certified, stride: 1, simplify: None }
-    }
-}
-
-/// What is counted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct TallyPlan {
-    /// How often intervals are to hold the truth, between 0 and 1.
-    pub confidence: f64,
-    /// Rope lengths: for each, when the rope first becomes longer (the survival curve).
-    pub limits: Vec<f64>,
-    /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's size.
-    pub bin: f64,
-    /// How many cells the longer side of the map of the plane has; they are squares. 0 for no map.
-    pub map: u32,
-    /// After how many steps the map looks at the free end again: neighbouring steps say nearly the same.
-    pub map_every: u32,
-    /// How many of the most common taut ropes are reported.
-    pub ropes: u32,
-}
-
-impl Default for TallyPlan {
-    fn default() -> Self {
-        TallyPlan { confidence: 0.95, limits: Vec::new(), bin: 0.0, map: 64, map_every: 8, ropes: 10 }
     }
 }
 

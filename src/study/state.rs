@@ -7,15 +7,15 @@ use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::opened::Study;
-use super::summary::Stopped;
-use super::tally::{Block, Tallies};
+use super::tally::{Block, Counts, Merge};
 use crate::output::{WholeFile, WriteError};
 
 /// What a state file begins with. The number changes when the format does.
-const MAGIC: &[u8] = b"tautline study state 3\n";
+const MAGIC: &[u8] = b"tautline study state 4\n";
 
 /// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -64,6 +64,20 @@ impl fmt::Display for Shard {
     }
 }
 
+/// Why a study ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Stopped {
+    /// All traces are done; of a shard, all its own.
+    Complete,
+    /// The mean is as certain as was asked for.
+    RelativeError,
+    /// The time was over.
+    Seconds,
+    /// It has not ended.
+    Unfinished,
+}
+
 /// How far a study, or a shard of one, is.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct State {
@@ -76,7 +90,7 @@ pub struct State {
     pub(super) stopped: Stopped,
     /// How long that took, in seconds.
     pub(super) seconds: f64,
-    pub(super) tallies: Tallies,
+    pub(super) counts: Counts,
     /// What is kept beside the state, so that it is known again.
     pub kept: Kept,
 }
@@ -135,7 +149,7 @@ impl State {
             kept: Kept::default(),
             stopped: if nothing_to_do { Stopped::Complete } else { Stopped::Unfinished },
             seconds: 0.0,
-            tallies: Tallies::default(),
+            counts: Counts::default(),
         }
     }
 
@@ -157,7 +171,7 @@ impl State {
 
     /// How many traces the blocks have that are done.
     pub fn traces(&self) -> u64 {
-        self.tallies.counts.traces.sum
+        self.counts.totals.traces.sum
     }
 
     /// Whether there is nothing left to do, and why.
@@ -266,7 +280,7 @@ pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, 
     }
     for (_, state) in shards {
         whole.seconds += state.seconds;
-        whole.tallies.merge(state.tallies);
+        whole.counts.merge_with(state.counts);
     }
     whole.done = blocks;
     whole.stopped = Stopped::Complete;
