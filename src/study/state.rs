@@ -14,12 +14,34 @@ use super::opened::Study;
 use super::tally::{Block, Counts, Merge};
 use crate::output::{WholeFile, WriteError};
 
-/// What a state file begins with. The number changes when the format does.
-const MAGIC: &[u8] = b"tautline study state 4\n";
+/// What a state file begins with, before the hash of its layout.
+const MAGIC: &str = "tautline study state ";
+
+/// The first line of a state file. It tells what the fields of a state are and of which types, so that none is read that has
+/// others: not their numbers, which [`ANSWERS`](super::opened::ANSWERS) stands for.
+fn first_line() -> Vec<u8> {
+    let hash = blake3::hash(layout::<State>().to_string().as_bytes()).to_hex();
+    format!("{MAGIC}{}\n", &hash[..8]).into_bytes()
+}
+
+/// The names of all fields, in their order, and their types.
+fn layout<T: JsonSchema>() -> serde_json::Value {
+    fn without_words(schema: &mut serde_json::Value) {
+        if let Some(fields) = schema.as_object_mut() {
+            fields.retain(|name, value| name != "description" || !value.is_string());
+        }
+        schema.as_object_mut().into_iter().flat_map(|fields| fields.values_mut()).for_each(without_words);
+        schema.as_array_mut().into_iter().flatten().for_each(without_words);
+    }
+    let mut schema = schemars::schema_for!(T).to_value();
+    without_words(&mut schema);
+    schema
+}
 
 /// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by `of`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "(u32, u32)")]
+#[schemars(with = "(u32, u32)")]
 pub struct Shard {
     number: u32,
     of: u32,
@@ -79,7 +101,7 @@ pub enum Stopped {
 }
 
 /// How far a study, or a shard of one, is.
-#[derive(Clone, Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize, JsonSchema)]
 pub struct State {
     pub(super) identity: String,
     pub(super) shard: Shard,
@@ -99,7 +121,7 @@ pub struct State {
 pub type Check = [u8; blake3::OUT_LEN];
 
 /// What is kept beside a state, with check sums by which it is known again.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Kept {
     /// Files of rows, in the order of their traces.
     pub parts: Vec<Part>,
@@ -108,7 +130,7 @@ pub struct Kept {
 }
 
 /// A file of rows.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Part {
     /// Of which traces it has rows: their [places](Study::places) in the shard.
     pub places: Range<u64>,
@@ -194,7 +216,7 @@ impl State {
         let mut file = WholeFile::create(path)?;
         let mut write =
             |bytes: &[u8]| file.write_all(bytes).map_err(|cause| WriteError::Io { path: path.into(), cause });
-        write(MAGIC)?;
+        write(&first_line())?;
         write(blake3::hash(&bytes).as_bytes())?;
         write(&bytes)?;
         file.finish_durably()
@@ -208,8 +230,8 @@ impl State {
     pub fn load(path: &Path, study: &Study) -> Result<Self, StateError> {
         let fault = |what: &str| StateError { path: path.to_owned(), what: what.to_owned() };
         let bytes = fs::read(path).map_err(|e| fault(&e.to_string()))?;
-        let Some(rest) = bytes.strip_prefix(MAGIC) else {
-            let kin = bytes.starts_with(&MAGIC[..MAGIC.len() - 2]);
+        let Some(rest) = bytes.strip_prefix(first_line().as_slice()) else {
+            let kin = bytes.starts_with(MAGIC.as_bytes());
             return Err(fault(if kin {
                 "the state of another version of tautline"
             } else {
@@ -290,6 +312,53 @@ pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_layout_is_what_fields_there_are_in_which_order() {
+        /// A state.
+        #[derive(JsonSchema)]
+        #[schemars(rename = "S")]
+        #[allow(dead_code)]
+        struct Old {
+            /// Before.
+            first: u64,
+            second: u64,
+            counts: Vec<Inner<u64>>,
+        }
+        #[derive(JsonSchema)]
+        #[schemars(rename = "S")]
+        #[allow(dead_code)]
+        struct Reworded {
+            first: u64,
+            second: u64,
+            counts: Vec<Inner<u64>>,
+        }
+        #[derive(JsonSchema)]
+        #[schemars(rename = "S")]
+        #[allow(dead_code)]
+        struct Turned {
+            second: u64,
+            first: u64,
+            counts: Vec<Inner<u64>>,
+        }
+        #[derive(JsonSchema)]
+        #[schemars(rename = "S")]
+        #[allow(dead_code)]
+        struct Retyped {
+            first: u64,
+            second: u64,
+            counts: Vec<Inner<f64>>,
+        }
+        #[derive(JsonSchema)]
+        #[schemars(rename = "I")]
+        #[allow(dead_code)]
+        struct Inner<T> {
+            count: T,
+        }
+        let old = layout::<Old>();
+        assert_eq!(old, layout::<Reworded>());
+        assert!(old != layout::<Turned>() && old != layout::<Retyped>());
+    }
 
     #[test]
     fn a_shard_that_cannot_be_is_not_read() {

@@ -1,5 +1,6 @@
 //! Sums over blocks, from which ratios of correlated quantities get their errors.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::merge::Merge;
@@ -9,7 +10,7 @@ use super::merge::Merge;
 ///
 /// Steps of one trace say nearly the same, blocks say nothing of each other: so the error of a ratio of sums comes from how
 /// it differs from block to block (batch means).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Batches {
     pub sum: u64,
     squares: u128,
@@ -54,7 +55,7 @@ impl Merge for Batches {
 }
 
 /// The sizes of the blocks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Sizes {
     pub blocks: u64,
     pub sum: u64,

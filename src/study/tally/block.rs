@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use glam::DVec2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::merge::Merge;
@@ -75,7 +76,7 @@ macro_rules! blocks {
         }
 
         /// A block under way: what was counted of its first traces.
-        #[derive(Clone, Default, Serialize, Deserialize)]
+        #[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
         pub(crate) struct Block {
             traces: u64,
             looks: u64,
@@ -105,7 +106,7 @@ macro_rules! blocks {
         }
 
         /// Counts of some blocks.
-        #[derive(Clone, Default, Serialize, Deserialize)]
+        #[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
         pub(crate) struct Counts {
             pub totals: Totals,
             $(pub $name: <$Tally as Tally>::Counts,)*

@@ -21,7 +21,7 @@ use crate::study::plan::PlanError;
 const MOST: usize = 1000;
 
 /// How often a wall end was touched in a block.
-#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Held {
     wraps: u64,
     /// The steps with the rope about it.
@@ -29,7 +29,7 @@ pub(crate) struct Held {
 }
 
 /// How often a wall end was touched.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Touched {
     /// Over blocks as large as they have traces.
     wraps: Batches,

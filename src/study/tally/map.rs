@@ -56,7 +56,7 @@ impl Grid {
 }
 
 /// What is counted of a cell in a block.
-#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Seen {
     /// How often a free end was seen there.
     visits: u64,
@@ -67,7 +67,7 @@ pub(crate) struct Seen {
 }
 
 /// What is counted of a cell.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct CellCounts {
     /// How often a free end was seen there.
     visits: Sizes,

@@ -16,7 +16,7 @@ use crate::study::estimate::Estimate;
 use crate::study::plan::PlanError;
 
 /// How often ropes go about an obstacle.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Wound {
     /// How many ropes go about it counter-clockwise, and clockwise: both, like the turns, as if y pointed upwards.
     left: u64,

@@ -24,7 +24,7 @@ type Key = Vec<u32>;
 
 /// Counts of ropes. In each block the most common ropes are counted and the others left out, so that memory grows slowly: by
 /// no more than these a block, and in fact by those that were not common before. What may be missing from a count is known.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Common {
     counts: BTreeMap<Key, u64>,
     /// By how much each count can be too low at the most: in each block, by as much as the least count that was kept.

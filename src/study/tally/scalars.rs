@@ -89,14 +89,14 @@ fn of_rank(classes: &Classes, rank: u64) -> Option<u64> {
 pub(crate) struct Scalars;
 
 /// What is counted of a block.
-#[derive(Clone, Default, Serialize, Deserialize)]
+#[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Part {
     moments: [Moments; ALL.len()],
     classes: [Classes; ALL.len()],
 }
 
 /// What is counted of some blocks.
-#[derive(Clone, Default, Serialize, Deserialize)]
+#[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct ScalarCounts {
     /// Of each block, by its number.
     moments: BTreeMap<u64, [Moments; ALL.len()]>,

@@ -1,5 +1,6 @@
 //! What a tally is.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -13,9 +14,9 @@ use crate::study::plan::PlanError;
 /// Something that is counted of every trace and told in the summary. The value itself is what all blocks have in common.
 pub(crate) trait Tally: Sized + Send + Sync {
     /// What is counted of the first traces of a block.
-    type Part: Clone + Default + Serialize + DeserializeOwned + Send;
+    type Part: Clone + Default + Serialize + DeserializeOwned + JsonSchema + Send;
     /// What is counted of whole blocks.
-    type Counts: Clone + Default + Merge + Serialize + DeserializeOwned + Send;
+    type Counts: Clone + Default + Merge + Serialize + DeserializeOwned + JsonSchema + Send;
     /// What the summary says of it.
     type Answer;
 

@@ -8,7 +8,7 @@ use super::block::{Size, Traced};
 use super::merge::Merge;
 
 /// Sums over all traces of some blocks.
-#[derive(Clone, Default, Serialize, Deserialize)]
+#[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Totals {
     pub traces: Sizes,
     /// The numbers of steps after which a rope was looked at: one more for each trace than it has steps.
