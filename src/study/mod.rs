@@ -8,6 +8,7 @@ mod moments;
 mod opened;
 mod order;
 mod plan;
+mod plan_error;
 mod random;
 mod run;
 mod state;
@@ -21,13 +22,13 @@ pub use estimate::Estimate;
 pub use file::EXAMPLE;
 pub(crate) use moments::Moments;
 pub use opened::Study;
-pub use plan::{
-    AnchorPlan, AtWalls, OutputPlan, Plan, PlanError, RunPlan, Sampled, ScenePlan, Start, UntilPlan, WalkPlan,
-};
+pub use plan::{AnchorPlan, OutputPlan, Plan, RunPlan, Sampled, ScenePlan, UntilPlan};
+pub use plan_error::PlanError;
 pub use run::{RunError, Spent, run, run_again};
 pub use state::{Check, Kept, Part, Shard, State, StateError, Stopped, merge};
 pub use summary::Summary;
 pub use surroundings::anchor_warnings;
 // All answers of tallies, and the plan of their options.
 pub use tally::*;
-pub use walk::Walks;
+// The plans of all kinds of walks.
+pub use walk::*;

@@ -8,7 +8,8 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::free_space::FreeSpace;
-use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
+use super::plan::{AnchorPlan, Plan};
+use super::plan_error::PlanError;
 use super::random::{Purpose, Random};
 use super::state::Shard;
 use super::tally::{Setting, Tallies};
@@ -52,11 +53,12 @@ impl Study {
             (None, None) => return Err(PlanError::new("scene: give `file` or `built_in`")),
         };
         let models = models(&plan, &scene)?;
-        let (walks, given) = match &plan.walk {
-            WalkPlan::Given { file } => (Vec::new(), Some(folder.join(file))),
-            walk => {
-                let of = |model: &Arc<Model>| Walks::new(model.clone(), walk, plan.run.seed);
-                (models.iter().map(of).collect::<Result<_, _>>()?, None)
+        let given = plan.walk.given().map(|file| folder.join(file));
+        let walks = match given {
+            Some(_) => Vec::new(),
+            None => {
+                let of = |model: &Arc<Model>| Walks::new(model.clone(), &plan.walk, plan.run.seed);
+                models.iter().map(of).collect::<Result<_, _>>()?
             }
         };
         let identity = identity(&plan, &models, given.as_deref())?;
@@ -277,8 +279,8 @@ fn skip(reader: &mut TraceReader, count: u64) -> Result<u64, PlanError> {
 /// The plan with the number of its traces: where it does not say how many of a file it takes, all that there are. Reads the
 /// file to its end for that.
 fn counted(mut plan: Plan, folder: &Path) -> Result<Plan, PlanError> {
-    let count = match (&plan.walk, plan.run.traces) {
-        (WalkPlan::Given { file }, None) => {
+    let count = match (plan.walk.given(), plan.run.traces) {
+        (Some(file), None) => {
             let path = folder.join(file);
             // It is read again for its traces, so it can be no pipe.
             open(&path, false).map_err(|e| PlanError::new(e.to_string()))?;

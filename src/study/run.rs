@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::moments::Moments;
 use super::opened::{Source, Study};
-use super::plan::PlanError;
+use super::plan_error::PlanError;
 use super::state::{Shard, State, Stopped};
 use super::tally::{Block, Counts, Merge, Traced};
 use crate::engine::{Engine, EngineError, Job};

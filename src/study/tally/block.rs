@@ -13,7 +13,7 @@ use super::totals::Totals;
 use super::{TallyPlan, table};
 use crate::rope::{Lasting, TraceRecord, spans};
 use crate::scene::Model;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 use crate::study::tally;
 use crate::trace::SettledTrace;
 

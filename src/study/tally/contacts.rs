@@ -15,7 +15,7 @@ use super::tally::Tally;
 use super::totals::Totals;
 use crate::rope::Lasting;
 use crate::study::estimate::Estimate;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 
 /// How many wall ends are listed at the most.
 const MOST: usize = 1000;

@@ -13,7 +13,7 @@ use super::tally::Tally;
 use super::totals::Totals;
 use crate::geometry::number;
 use crate::study::estimate::Estimate;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 
 /// Of what there are histograms.
 const DRAWN: [Quantity; 2] = [LENGTH, MAX_LENGTH];

@@ -16,7 +16,7 @@ use super::tally::Tally;
 use super::totals::Totals;
 use crate::rope::Lasting;
 use crate::study::estimate::Estimate;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 
 /// The most cells that a side of the map can have.
 const MOST: u32 = 4096;

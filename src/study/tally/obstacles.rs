@@ -13,7 +13,7 @@ use super::tally::Tally;
 use super::totals::Totals;
 use super::winding::Islands;
 use crate::study::estimate::Estimate;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 
 /// How often ropes go about an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]

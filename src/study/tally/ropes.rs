@@ -14,7 +14,7 @@ use super::tally::Tally;
 use super::totals::Totals;
 use crate::rope::Side;
 use crate::study::estimate::Estimate;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 
 /// How many different ropes of each block are counted at the most: the most common ones.
 const ROPES_A_BLOCK: usize = 256;

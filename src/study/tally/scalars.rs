@@ -15,7 +15,7 @@ use super::totals::Totals;
 use crate::rope::{EventKind, TraceRecord};
 use crate::study::estimate::Estimate;
 use crate::study::moments::Moments;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 
 /// A number of which every trace has one.
 pub(super) struct Quantity {

@@ -8,7 +8,7 @@ use super::TallyPlan;
 use crate::geometry::number;
 use crate::scene::Model;
 use crate::study::estimate::Confidence;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 
 /// What all tallies of a study go by.
 pub(crate) struct Setting {

@@ -13,7 +13,7 @@ use super::totals::Totals;
 use crate::geometry::number;
 use crate::rope::Lasting;
 use crate::study::estimate::Estimate;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 
 /// At how many steps survival curves are given.
 const TIMES: u64 = 100;

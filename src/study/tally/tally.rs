@@ -9,7 +9,7 @@ use super::block::{Size, Traced};
 use super::merge::Merge;
 use super::setting::Setting;
 use super::totals::Totals;
-use crate::study::plan::PlanError;
+use crate::study::plan_error::PlanError;
 
 /// Something that is counted of every trace and told in the summary. The value itself is what all blocks have in common.
 pub(crate) trait Tally: Sized + Send + Sync {
