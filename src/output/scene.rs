@@ -46,8 +46,8 @@ impl WrittenScene {
         self.extensions
     }
 
-    /// What it has no place for of a scene that is not [bare](Scene::is_bare), as a sentence without a full stop; empty if it
-    /// keeps all.
+    /// What it has no place for of a scene that is not [bare](Scene::is_bare), as a sentence without a full stop; empty
+    /// if it keeps all.
     pub fn lacks(&self) -> &'static str {
         self.lacks
     }
@@ -55,10 +55,10 @@ impl WrittenScene {
 
 /// Writes `scene` to `path`: `.geojson` or `.json` as GeoJSON, `.wkt` as well-known text.
 ///
-/// Reading the file gives the same walls in the same order and direction, the same vertex numbers and the same anchor, bit
-/// for bit. GeoJSON keeps whether y points down, too, as a member of its own, and of each object its label, its layers and what
-/// of it is solid: in the member `tautline` of its features. Walls that follow each other are one line string. What the scene's reader noted is not written. The file is
-/// whole or not there at all.
+/// Reading the file gives the same walls in the same order and direction, the same vertex numbers and the same anchor,
+/// bit for bit. GeoJSON keeps whether y points down, too, as a member of its own, and of each object its label, its
+/// layers and what of it is solid: in the member `tautline` of its features. Walls that follow each other are one line
+/// string. What the scene's reader noted is not written. The file is whole or not there at all.
 ///
 /// # Errors
 ///

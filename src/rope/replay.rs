@@ -61,8 +61,8 @@ pub fn replay(anchor: DVec2, vertices: &[DVec2], points: usize, events: &[Event]
     }
 }
 
-/// Calls `each` with every moment of a trace in order: each event, then the end of its step. `vertices` are the scene's,
-/// `points` the trace's, `events` those of its record. O(points + events).
+/// Calls `each` with every moment of a trace in order: each event, then the end of its step. `vertices` are the
+/// scene's, `points` the trace's, `events` those of its record. O(points + events).
 ///
 /// # Panics
 ///
@@ -103,7 +103,8 @@ pub fn moments(anchor: DVec2, vertices: &[DVec2], points: &[DVec2], events: &[Ev
     }
 }
 
-/// Which share of the way from `a` to `b` has been made where it meets the line through `o` and `p`, if it meets it once.
+/// Which share of the way from `a` to `b` has been made where it meets the line through `o` and `p`, if it meets it
+/// once.
 fn crossing([o, p]: [DVec2; 2], [a, b]: [DVec2; 2]) -> Option<f64> {
     let [before, after] = [a, b].map(|q| (p - o).perp_dot(q - o));
     Some(before / (before - after)).filter(|share| share.is_finite())
@@ -114,8 +115,8 @@ fn crossing([o, p]: [DVec2; 2], [a, b]: [DVec2; 2]) -> Option<f64> {
 pub(crate) enum Lasting<'a> {
     /// The rope has the same contacts after each of these steps.
     Rope(&'a Rope, Range<u64>),
-    /// A contact, for so many steps: 0 where the rope bent round the same wall end before it came, and still does. It is told
-    /// of as it goes, or at the end.
+    /// A contact, for so many steps: 0 where the rope bent round the same wall end before it came, and still does. It
+    /// is told of as it goes, or at the end.
     Contact {
         /// The number of its wall end.
         vertex: u32,
@@ -124,8 +125,8 @@ pub(crate) enum Lasting<'a> {
     },
 }
 
-/// Calls `each` with each run of steps without an event, in order, and each contact. `last` is the number of the last step,
-/// `vertices` are the scene's. O(events), and contacts for those with another wall end than before.
+/// Calls `each` with each run of steps without an event, in order, and each contact. `last` is the number of the last
+/// step, `vertices` are the scene's. O(events), and contacts for those with another wall end than before.
 ///
 /// # Panics
 ///

@@ -24,8 +24,8 @@ impl SceneFormat {
         self.files
     }
 
-    /// What someone has to do with a file so that it marks the anchor: `put one POINT into the file`; empty if no file of this
-    /// format can.
+    /// What someone has to do with a file so that it marks the anchor: `put one POINT into the file`; empty if no file
+    /// of this format can.
     pub fn anchor(&self) -> &'static str {
         self.anchor
     }

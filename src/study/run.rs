@@ -59,9 +59,9 @@ struct Group {
 /// What a group's traces of one block have come to.
 enum Tallied {
     /// The block is whole.
-    Whole(Counts),
+    Whole(Box<Counts>),
     /// There is more to come of it.
-    Open(Block),
+    Open(Box<Block>),
 }
 
 /// Goes on with `state` until the study, or the shard, is done or the job is stopped.
@@ -118,12 +118,12 @@ fn in_groups<E: Send>(
             added += count;
             match tallied {
                 Tallied::Open(block) => {
-                    open = Some(block.clone());
-                    state.open = Some(block);
+                    open = Some(Block::clone(&block));
+                    state.open = Some(*block);
                 }
                 Tallied::Whole(counts) => {
                     longest.merge(&counts.scalars.max_length());
-                    state.counts.merge_with(counts);
+                    state.counts.merge_with(*counts);
                     (state.done, state.open) = (index + 1, None);
                     state.stopped = stopped(study, &longest, state.done == all);
                     if state.stopped != Stopped::Unfinished {
@@ -241,8 +241,8 @@ fn tally(
     let count = |(index, is_whole, mut block, part): (u64, bool, Block, Vec<Traced<'_>>)| {
         block.add(&study.tallies, &part);
         let tallied = match is_whole {
-            true => Tallied::Whole(block.finish(&study.tallies, shard.block(index))),
-            false => Tallied::Open(block),
+            true => Tallied::Whole(Box::new(block.finish(&study.tallies, shard.block(index)))),
+            false => Tallied::Open(Box::new(block)),
         };
         (index, part.len(), tallied)
     };

@@ -17,8 +17,8 @@ use crate::output::{WholeFile, WriteError};
 /// What a state file begins with, before the hash of its layout.
 const MAGIC: &str = "tautline study state ";
 
-/// The first line of a state file. It tells what the fields of a state are and of which types, so that none is read that has
-/// others: not their numbers, which [`ANSWERS`](super::opened::ANSWERS) stands for.
+/// The first line of a state file. It tells what the fields of a state are and of which types, so that none is read
+/// that has others: not their numbers, which [`ANSWERS`](super::opened::ANSWERS) stands for.
 fn first_line() -> Vec<u8> {
     let hash = blake3::hash(layout::<State>().to_string().as_bytes()).to_hex();
     format!("{MAGIC}{}\n", &hash[..8]).into_bytes()
@@ -38,7 +38,8 @@ fn layout<T: JsonSchema>() -> serde_json::Value {
     schema
 }
 
-/// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by `of`.
+/// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by
+/// `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "(u32, u32)")]
 #[schemars(with = "(u32, u32)")]

@@ -133,7 +133,7 @@ fn answers_that_change_have_another_number() {
     let expected = ANSWERED.1.map(|(part, hash)| (part, hash.to_owned()));
     assert!(
         found == expected && ANSWERED.0 == ANSWERS,
-        "studies answer otherwise than before: raise the number of ANSWERS in src/study/opened.rs, so that no study goes on with \
-         what came out before, and write it here with {found:#?}"
+        "studies answer otherwise than before: raise the number of ANSWERS in src/study/opened.rs, so that no study \
+         goes on with what came out before, and write it here with {found:#?}"
     );
 }

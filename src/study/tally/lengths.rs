@@ -1,9 +1,11 @@
 //! Classes of lengths, fine enough for quantiles.
 //!
-//! A class has the lengths with the same first 8 bits and the same power of two, so nothing is rounded, and no scale is better
-//! than another. (Like the log-linear buckets of HdrHistogram; sketches with logarithms depend on the machine's.)
+//! A class has the lengths with the same first 8 bits and the same power of two, so nothing is rounded, and no scale is
+//! better than another. (Like the log-linear buckets of HdrHistogram; sketches with logarithms depend on the
+//! machine's.)
 
-/// How many of a number's last bits are left out: with 7 bits after the first, a class is at most 2^-7 of its numbers wide.
+/// How many of a number's last bits are left out: with 7 bits after the first, a class is at most 2^-7 of its numbers
+/// wide.
 const SHIFT: u32 = 52 - 7;
 
 /// The number of a length's class. Longer lengths have no lower one.

@@ -1,10 +1,10 @@
 //! What is counted of every trace, block by block.
 //!
-//! All but the moments are whole numbers, so that blocks may be put together in any order; the moments are kept for each
-//! block and put together in the order of the blocks.
+//! All but the moments are whole numbers, so that blocks may be put together in any order; the moments are kept for
+//! each block and put together in the order of the blocks.
 //!
-//! A tally is a file with a struct that is a [`Tally`](tally::Tally), and a line in [`table`], in the order of the summary;
-//! its options have their lines there too, in the order of a plan.
+//! A tally is a file with a struct that is a [`Tally`](tally::Tally), and a line in [`table`], in the order of the
+//! summary; its options have their lines there too, in the order of a plan.
 
 mod batches;
 mod block;
@@ -40,8 +40,8 @@ pub use totals::Traded;
 
 /// All tallies and their options, handed to the macro `$to`.
 ///
-/// An option is a field of a plan's `[tallies]`: its description, its name, its type, and what it is unless told otherwise. A
-/// tally is a field of the summary: its description, its name, its type, and what counts it.
+/// An option is a field of a plan's `[tallies]`: its description, its name, its type, and what it is unless told
+/// otherwise. A tally is a field of the summary: its description, its name, its type, and what counts it.
 macro_rules! table {
     ($to:ident) => {
         $to! {
@@ -50,7 +50,8 @@ macro_rules! table {
                 confidence: f64 = 0.95;
                 /// Rope lengths: for each, when the rope first becomes longer (the survival curve).
                 limits: Vec<f64> = Vec::new();
-                /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's size.
+                /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's
+                /// size.
                 bin: f64 = 0.0;
                 /// How many cells the longer side of the map of the plane has; they are squares. 0 for no map.
                 map: u32 = 64;
@@ -70,7 +71,8 @@ macro_rules! table {
                 obstacles: Vec<tally::Obstacle> = tally::obstacles::Obstacles;
                 /// The most common taut ropes at the end, the most common first.
                 ropes: Vec<tally::CommonRope> = tally::ropes::Ropes;
-                /// The wall ends with which ropes had contacts, those with the greatest share of steps first, at most a thousand.
+                /// The wall ends with which ropes had contacts, those with the greatest share of steps first, at most a
+                /// thousand.
                 contacts: Vec<tally::Contact> = tally::contacts::Contacts;
                 /// The plane.
                 map: Option<tally::Map> = tally::map::Cells;

@@ -28,8 +28,8 @@ pub(crate) struct Limits {
 
 impl Tally for Limits {
     type Part = Self::Counts;
-    /// For each limit: how many ropes first became longer after so many of the times had gone by. Limits that no rope exceeded
-    /// may be left out at the end.
+    /// For each limit: how many ropes first became longer after so many of the times had gone by. Limits that no rope
+    /// exceeded may be left out at the end.
     type Counts = Vec<BTreeMap<u64, u64>>;
     type Answer = Vec<Survival>;
 
@@ -82,7 +82,8 @@ impl Tally for Limits {
         part
     }
 
-    /// For each limit the share of ropes that were never longer up to a step, or up to their trace's end if that came before.
+    /// For each limit the share of ropes that were never longer up to a step, or up to their trace's end if that came
+    /// before.
     fn answer(&self, counts: &Self::Counts, totals: &Totals, setting: &Setting) -> Vec<Survival> {
         let (traces, last) = (totals.traces.sum, totals.longest_trace);
         let curve = |(i, &limit): (usize, &f64)| {

@@ -11,7 +11,8 @@ use super::setting::Setting;
 use super::totals::Totals;
 use crate::study::plan_error::PlanError;
 
-/// Something that is counted of every trace and told in the summary. The value itself is what all blocks have in common.
+/// Something that is counted of every trace and told in the summary. The value itself is what all blocks have in
+/// common.
 pub(crate) trait Tally: Sized + Send + Sync {
     /// What is counted of the first traces of a block.
     type Part: Clone + Default + Serialize + DeserializeOwned + JsonSchema + Send;

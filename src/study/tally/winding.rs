@@ -65,8 +65,8 @@ impl Islands {
         self.0.iter().find(|o| o.vertex == vertex)
     }
 
-    /// Calls `each` with the islands about which the rope from `anchor` round `wraps` to `end` goes at least once all the
-    /// way, and how often, counter-clockwise counting as positive.
+    /// Calls `each` with the islands about which the rope from `anchor` round `wraps` to `end` goes at least once all
+    /// the way, and how often, counter-clockwise counting as positive.
     pub(crate) fn wound(&self, anchor: DVec2, wraps: &[(DVec2, Side)], end: DVec2, mut each: impl FnMut(u32, i64)) {
         // A straight line sees less than half a turn, so three of them are needed for a whole one.
         if wraps.len() < 2 {

@@ -60,8 +60,8 @@ impl dyn Kind + '_ {
 
 /// What draws the traces of one plan.
 pub(crate) trait Draw: Send + Sync {
-    /// The points of a trace that starts there, in memory with room for one more, and how many of its steps met a wall or the
-    /// border as they were drawn first.
+    /// The points of a trace that starts there, in memory with room for one more, and how many of its steps met a wall
+    /// or the border as they were drawn first.
     fn draw(&self, room: &Room, start: From, dice: Dice) -> (Vec<DVec2>, usize);
 
     /// Whether steps keep clear of the walls: they may touch none, not even as they pass its end.
