@@ -44,40 +44,35 @@ pub use totals::Traded;
 /// otherwise. A tally is a field of the summary: its description, its name, its type, and what counts it.
 macro_rules! table {
     ($to:ident) => {
-        $to! {
-            options {
-                /// How often intervals are to hold the truth, between 0 and 1.
-                confidence: f64 = 0.95;
-                /// Rope lengths: for each, when the rope first becomes longer (the survival curve).
-                limits: Vec<f64> = Vec::new();
-                /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's
-                /// size.
-                bin: f64 = 0.0;
-                /// How many cells the longer side of the map of the plane has; they are squares. 0 for no map.
-                map: u32 = 64;
-                /// After how many steps the map looks at the free end again: neighbouring steps say nearly the same.
-                map_every: u32 = 8;
-                /// How many of the most common taut ropes are reported.
-                ropes: u32 = 10;
-            }
-            tallies {
-                /// One number a trace: its distribution over the traces.
-                scalars: Vec<tally::Scalar> = tally::scalars::Scalars;
-                /// Histograms of the rope length at the end and of the greatest.
-                histograms: Vec<tally::Histogram> = tally::histograms::Histograms;
-                /// For each limit, when the rope became longer.
-                survival: Vec<tally::Survival> = tally::survival::Limits;
-                /// The obstacles that ropes were wound about at the end, the most often first.
-                obstacles: Vec<tally::Obstacle> = tally::obstacles::Obstacles;
-                /// The most common taut ropes at the end, the most common first.
-                ropes: Vec<tally::CommonRope> = tally::ropes::Ropes;
-                /// The wall ends with which ropes had contacts, those with the greatest share of steps first, at most a
-                /// thousand.
-                contacts: Vec<tally::Contact> = tally::contacts::Contacts;
-                /// The plane.
-                map: Option<tally::Map> = tally::map::Cells;
-            }
-        }
+        $to! { options {
+        /// How often intervals are to hold the truth, between 0 and 1.
+        confidence: f64 = 0.95;
+        /// Rope lengths: for each, when the rope first becomes longer (the survival curve).
+        limits: Vec<f64> = Vec::new();
+        /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's size.
+        bin: f64 = 0.0;
+        /// How many cells the longer side of the map of the plane has; they are squares. 0 for no map.
+        map: u32 = 64;
+        /// After how many steps the map looks at the free end again: neighbouring steps say nearly the same.
+        map_every: u32 = 8;
+        /// How many of the most common taut ropes are reported.
+        ropes: u32 = 10;
+        } tallies {
+        /// One number a trace: its distribution over the traces.
+        scalars: Vec<tally::Scalar> = tally::scalars::Scalars;
+        /// Histograms of the rope length at the end and of the greatest.
+        histograms: Vec<tally::Histogram> = tally::histograms::Histograms;
+        /// For each limit, when the rope became longer.
+        survival: Vec<tally::Survival> = tally::survival::Limits;
+        /// The obstacles that ropes were wound about at the end, the most often first.
+        obstacles: Vec<tally::Obstacle> = tally::obstacles::Obstacles;
+        /// The most common taut ropes at the end, the most common first.
+        ropes: Vec<tally::CommonRope> = tally::ropes::Ropes;
+        /// The wall ends with which ropes had contacts, those with the greatest share of steps first, at most a thousand.
+        contacts: Vec<tally::Contact> = tally::contacts::Contacts;
+        /// The plane.
+        map: Option<tally::Map> = tally::map::Cells;
+        } }
     };
 }
 pub(super) use table;
