@@ -23,7 +23,7 @@ impl EventKind {
     }
 }
 
-/// One push or pop. A trace's events, in order, give its rope at every step ([`replay`](super::replay)).
+/// One push or pop. A trace's events, in order, give its rope at every step ([`replay`](super::replay())).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Event {
     /// The step in which it happened: the move from point `step - 1` to point `step`; 0 is the move from the anchor

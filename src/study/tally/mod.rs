@@ -3,7 +3,7 @@
 //! All but the moments are whole numbers, so that blocks may be put together in any order; the moments are kept for
 //! each block and put together in the order of the blocks.
 //!
-//! A tally is a file with a struct that is a [`Tally`](tally::Tally), and a line in [`table`], in the order of the
+//! A tally is a file with a struct that is a [`Tally`], and a line in [`table`], in the order of the
 //! summary; its options have their lines there too, in the order of a plan.
 
 mod batches;
