@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
-use super::folder::{PAGE, RUN_REPORT, SUMMARY};
-use super::{Folder, RunReport, Session, SessionError, locked, pretty};
+use super::error::SessionError;
+use super::folder::Folder;
+use super::names::{PAGE, RUN_REPORT, SUMMARY};
+use super::report::{RunReport, pretty};
+use super::under_way::{Session, locked};
 use crate::picture;
 use crate::study::{State, Stopped, Study, Summary};
 
@@ -11,8 +14,8 @@ use crate::study::{State, Stopped, Study, Summary};
 const WIDTH: u32 = 1600;
 
 impl Session {
-    /// Writes the answer so far, and what it cost: `summary.json`, `run.json`, and where the study says so the pictures and the
-    /// page that shows them.
+    /// Writes the answer so far, and what it cost: `summary.json`, `run.json`, and where the study says so the pictures
+    /// and the page that shows them.
     ///
     /// # Errors
     ///
@@ -49,12 +52,13 @@ fn draw(folder: &Folder, summary: &Summary, study: &Study, report: &RunReport) -
     Ok(folder.write(PAGE, picture::page(summary, &shown, Some(&report)).as_bytes())?)
 }
 
-/// A study in a folder, and how far it is. Its files are named from `base`, or else from where they were as it began. Whoever
-/// writes there is not disturbed.
+/// A study in a folder, and how far it is. Its files are named from `base`, or else from where they were as it began.
+/// Whoever writes there is not disturbed.
 ///
 /// # Errors
 ///
-/// A folder without a study or with a damaged one; a study whose files are not there any more, or of which nothing is saved.
+/// A folder without a study or with a damaged one; a study whose files are not there any more, or of which nothing is
+/// saved.
 pub fn look(folder: &Path, base: Option<&Path>) -> Result<(Study, State), SessionError> {
     let folder = Folder::at(folder);
     let (study, _) = folder.study(base)?;

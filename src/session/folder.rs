@@ -9,23 +9,11 @@ use std::sync::{Mutex, PoisonError};
 use serde::{Deserialize, Serialize};
 
 use super::error::{Difference, Note, SessionError};
-use super::lock::{LOCK, Lock};
+use super::lock::Lock;
+use super::names::{LOCK, PAGE, PARTS, RUN_REPORT, STATE, STUDY, SUMMARY, TRACES};
 use super::report::RunReport;
-use super::rows::{PARTS, TRACES};
 use crate::output::{WholeFile, WriteError, remove_left_files};
 use crate::study::{Check, Plan, Shard, State, Study};
-
-/// The answer.
-pub(super) const SUMMARY: &str = "summary.json";
-
-/// What the run cost and where it ran.
-pub(super) const RUN_REPORT: &str = "run.json";
-
-/// The answer as a page.
-pub(super) const PAGE: &str = "report.html";
-
-const STATE: &str = "state.bin";
-const STUDY: &str = "study.json";
 
 /// What a folder remembers of its study: enough to begin it.
 #[derive(Serialize, Deserialize)]
@@ -257,8 +245,8 @@ impl Folder {
         self.stage.store(BEGUN, Ordering::SeqCst);
     }
 
-    /// Takes back what this process did here, unless there is something that must not be lost. What has taken the folder's place
-    /// meanwhile is another's.
+    /// Takes back what this process did here, unless there is something that must not be lost. What has taken the
+    /// folder's place meanwhile is another's.
     pub fn take_back(&self) {
         if self.lock.as_ref().is_some_and(|lock| !lock.is_in_place()) {
             return;

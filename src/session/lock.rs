@@ -7,12 +7,11 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::error::{Note, SessionError};
+use super::names::LOCK;
 use crate::output::WriteError;
 
-/// The file in a study's folder on which the lock lies. It stays there: whoever removed it could not know who waits for it.
-pub(super) const LOCK: &str = "lock";
-
-/// Held by the process that writes to a study's folder. The operating system lets go of it when the process ends, in whatever way.
+/// Held by the process that writes to a study's folder. The operating system lets go of it when the process ends, in
+/// whatever way.
 pub(super) struct Lock {
     file: File,
     path: PathBuf,
@@ -43,8 +42,8 @@ impl Lock {
         }
     }
 
-    /// Takes part in the lock of a folder that is only read, so that nobody writes to it meanwhile. `None` for one that has never
-    /// been written to by a process with a lock.
+    /// Takes part in the lock of a folder that is only read, so that nobody writes to it meanwhile. `None` for one that
+    /// has never been written to by a process with a lock.
     pub(super) fn share(folder: &Path) -> Result<Option<File>, SessionError> {
         let Ok(mut file) = File::open(folder.join(LOCK)) else { return Ok(None) };
         match patiently(|| file.try_lock_shared()) {

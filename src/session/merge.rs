@@ -3,20 +3,24 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::folder::check;
+use super::error::SessionError;
+use super::folder::{Folder, check};
 use super::lock::Lock;
-use super::rows::{self, TRACES};
-use super::{Computed, Folder, RunReport, Session, SessionError, provenance};
+use super::names::TRACES;
+use super::report::{Computed, RunReport, provenance};
+use super::rows;
+use super::under_way::Session;
 use crate::output::{WriteError, merge_results};
 use crate::study::{Shard, State, Study, merge as merge_states};
 
-/// Puts the shards in these folders together, all of a study's, in the folder `out`. `made` is told of that once the shards are
-/// known to be sound and it is there. No shard is written to meanwhile. Returns the study there, to be
+/// Puts the shards in these folders together, all of a study's, in the folder `out`. `made` is told of that once the
+/// shards are known to be sound and it is there. No shard is written to meanwhile. Returns the study there, to be
 /// [concluded](Session::conclude) with the report.
 ///
 /// # Errors
 ///
-/// Shards that do not make a whole, or are damaged; a folder that holds something else, and what the operating system says.
+/// Shards that do not make a whole, or are damaged; a folder that holds something else, and what the operating system
+/// says.
 ///
 /// # Panics
 ///

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::{Engine, Precision};
 use crate::environment::Environment;
+use crate::study::Study;
 
 /// What computed a study's ropes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -140,4 +141,21 @@ impl RunReport {
 /// A report as it is written: JSON with its keys in order, and a line end.
 pub(super) fn pretty(report: &impl Serialize) -> Result<String, serde_json::Error> {
     Ok(format!("{:#}\n", serde_json::to_value(report)?))
+}
+
+/// What each file of rows says of where it comes from.
+pub(super) fn provenance(study: &Study, computed: &Computed) -> Vec<(&'static str, String)> {
+    let here = Environment::here(None);
+    let run = &study.plan().run;
+    let mut notes = vec![
+        ("tautline.version", here.version.to_owned()),
+        ("tautline.commit", here.commit.to_owned()),
+        ("tautline.study", study.identity().to_owned()),
+        ("tautline.seed", run.seed.to_string()),
+        ("tautline.engine", computed.engine.to_owned()),
+        ("tautline.precision", computed.precision.to_owned()),
+        ("tautline.on", computed.on.clone()),
+    ];
+    notes.extend(run.trade().notes());
+    notes
 }

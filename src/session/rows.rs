@@ -1,6 +1,6 @@
-//! One row for each trace: `traces.parquet`. Until the study is done, the rows are in a folder of such files, one for each
-//! time between two checkpoints. The state knows each of them by its check sum; what is missing or is not as it was written is
-//! computed again.
+//! One row for each trace: `traces.parquet`. Until the study is done, the rows are in a folder of such files, one for
+//! each time between two checkpoints. The state knows each of them by its check sum; what is missing or is not as it
+//! was written is computed again.
 
 use std::fs;
 use std::ops::Range;
@@ -8,16 +8,11 @@ use std::path::{Path, PathBuf};
 
 use super::error::{Action, Note, RowsFault, SessionError};
 use super::folder::{Folder, check};
+use super::names::{PARTS, TRACES};
 use crate::output::{ResultWriter, WriteError, merge_results};
 use crate::rope::TraceRecord;
 use crate::scene::Scene;
 use crate::study::{Check, Part, State, Stopped, Study};
-
-/// The file that is there in the end, in the study's folder.
-pub(super) const TRACES: &str = "traces.parquet";
-
-/// The folder of the parts, in the study's folder.
-pub(super) const PARTS: &str = "traces";
 
 pub(super) struct Rows {
     folder: PathBuf,
@@ -30,9 +25,9 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// Goes on where `state` does, of the study in `folder`, and tells which rows are to be computed again, by the places of their
-    /// traces: the state then does not count on the files in which they were. What it does not know is dropped. No parts if all rows
-    /// are in their place.
+    /// Goes on where `state` does, of the study in `folder`, and tells which rows are to be computed again, by the
+    /// places of their traces: the state then does not count on the files in which they were. What it does not know is
+    /// dropped. No parts if all rows are in their place.
     pub(super) fn open(
         folder: &Folder,
         study: &Study,

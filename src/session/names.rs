@@ -1,0 +1,25 @@
+//! What the files in a study's folder are called.
+
+/// The answer.
+pub(super) const SUMMARY: &str = "summary.json";
+
+/// What the run cost and where it ran.
+pub(super) const RUN_REPORT: &str = "run.json";
+
+/// The answer as a page.
+pub(super) const PAGE: &str = "report.html";
+
+/// How far the study is.
+pub(super) const STATE: &str = "state.bin";
+
+/// What the study is.
+pub(super) const STUDY: &str = "study.json";
+
+/// One row a trace, once the study is done.
+pub(super) const TRACES: &str = "traces.parquet";
+
+/// The folder of the rows until then.
+pub(super) const PARTS: &str = "traces";
+
+/// On which the lock lies. It stays there: whoever removed it could not know who waits for it.
+pub(super) const LOCK: &str = "lock";
