@@ -49,7 +49,8 @@ pub enum SessionError {
     },
     /// The folder holds another study.
     #[error(
-        "{0} holds a study already, and another one: {1}; go on with that by `tautline study resume {0}`, or give another --out",
+        "{0} holds a study already, and another one: {1}; go on with that by `tautline study resume {0}`, \
+         or give another --out",
         folder.display(), difference
     )]
     Another {

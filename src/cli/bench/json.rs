@@ -38,7 +38,9 @@ fn row(row: &Row) -> Value {
         "tests_per_step": row.tests_per_step, "tests_avoided_per_step": row.tests_avoided_per_step,
         "events_per_step": row.events_per_step, "events_per_second": row.events_per_second(),
         "phases": phases, "wrong_ropes": row.wrong_ropes,
-        "relative": row.relative.map(|r| json!({"to": Contender::BASELINE.engine.name, "ratio": r.ratio, "paired": spread(r.paired)})),
+        "relative": row.relative.map(|r| json!({
+            "to": Contender::BASELINE.engine.name, "ratio": r.ratio, "paired": spread(r.paired),
+        })),
     })
 }
 
