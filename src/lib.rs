@@ -42,6 +42,7 @@
 pub mod candidates;
 mod caught;
 pub mod engine;
+pub mod environment;
 pub mod escape;
 pub mod example;
 pub mod fast;
@@ -56,6 +57,7 @@ mod read_file;
 pub mod report;
 pub mod rope;
 pub mod scene;
+pub mod session;
 pub mod simplify;
 pub mod stream;
 pub mod study;

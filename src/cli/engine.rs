@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use anyhow::anyhow;
-use clap::ValueEnum;
-use tautline::engine::{Cpu, Engine, FastGpu, Funnel, Gpu, Note, Precision, Reference, WINDOW};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use tautline::engine::{
+    ENGINES, Engine, EngineError, EngineKind, GPU, Opened, Options, Precision, RunsOn, WINDOW, Why, open_best,
+};
 use tautline::gpu::{AdapterChoice, Device, GpuError, driver_faults};
 use tautline::scene::Model;
 
@@ -14,7 +16,7 @@ use super::failure::Failure;
 #[derive(Debug, clap::Args)]
 pub(crate) struct EngineArgs {
     /// What computes the ropes
-    #[arg(long, value_enum, default_value = "auto")]
+    #[arg(long, value_parser = names(|_| false), default_value = AUTO)]
     engine: EngineName,
     /// Which GPU: part of its name, its number in `tautline adapters`, or `software`; implies `--engine gpu`
     #[arg(long, value_name = "NAME")]
@@ -31,21 +33,12 @@ pub(crate) struct EngineArgs {
     keep_all: bool,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum EngineName {
-    /// `gpu` on a real GPU, else `cpu`
-    Auto,
-    /// A compute shader finds candidates for many traces at once, the CPU decides exactly
-    Gpu,
-    /// The same on threads
-    Cpu,
-    /// One trace and one step after the other, every vertex tried: the arbiter
-    Reference,
-    /// Another method: triangulation, crossing word, funnel
-    Funnel,
-    /// The seed note's listing 1, as written: wrong on purpose, for comparison
-    Note,
-}
+/// The engine asked for; `None` for the one that suits the machine.
+#[derive(Debug, Clone, Copy)]
+struct EngineName(Option<&'static EngineKind>);
+
+/// What stands for the engine that suits the machine.
+const AUTO: &str = "auto";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum PrecisionName {
@@ -55,20 +48,32 @@ enum PrecisionName {
     Fast,
 }
 
+/// Takes the names of all engines, and `auto`; offers those of which `is_hidden` does not hold.
+fn names(is_hidden: fn(&EngineKind) -> bool) -> impl TypedValueParser<Value = EngineName> {
+    let auto = PossibleValue::new(AUTO).help("`gpu` on a real GPU, else `cpu`");
+    let named = ENGINES.map(|kind| PossibleValue::new(kind.name).help(kind.about).hide(is_hidden(kind)));
+    PossibleValuesParser::new([auto].into_iter().chain(named)).map(|name| EngineName(EngineKind::named(&name)))
+}
+
 /// The engines that an answer can be computed with: those that count the same events. The others are not offered; given all
 /// the same, they are [refused](super::study) with the reason.
 pub(super) fn of_studies(arg: clap::Arg) -> clap::Arg {
-    use clap::builder::{PossibleValuesParser, TypedValueParser};
-    let offered = EngineName::value_variants().iter().filter_map(|name| {
-        let is_hidden = matches!(name, EngineName::Funnel | EngineName::Note);
-        Some(name.to_possible_value()?.hide(is_hidden))
-    });
-    let named = |name: String| EngineName::from_str(&name, false).expect("only names of engines are taken");
-    arg.value_parser(PossibleValuesParser::new(offered).map(named))
+    arg.value_parser(names(|kind| !kind.counts_events()))
 }
 
-/// An engine, and in words what it runs on.
-type Opened = (Box<dyn Engine>, String);
+/// Takes the names of engines that are measured, in this order.
+pub(super) fn measured(
+    engines: impl IntoIterator<Item = &'static EngineKind>,
+) -> impl TypedValueParser<Value = &'static EngineKind> {
+    let mut once: Vec<&EngineKind> = Vec::new();
+    for kind in engines {
+        if !once.contains(&kind) {
+            once.push(kind);
+        }
+    }
+    PossibleValuesParser::new(once.into_iter().map(|kind| kind.name))
+        .map(|name| EngineKind::named(&name).expect("only names of engines are taken"))
+}
 
 impl EngineArgs {
     /// The precision asked for, if one was.
@@ -79,18 +84,19 @@ impl EngineArgs {
         })
     }
 
-    /// Opens the engine asked for; says on stderr what was chosen where there was a choice.
-    pub(crate) fn open(&self, model: &Arc<Model>) -> Result<Opened, Failure> {
-        self.open_for(self.precision().unwrap_or_default(), model)
+    /// Opens the engine asked for, and tells in words what it runs on; says on stderr what was chosen where there was a choice.
+    pub(crate) fn open(&self, model: &Arc<Model>) -> Result<(Box<dyn Engine>, String), Failure> {
+        let opened = self.open_for(self.precision().unwrap_or_default(), model)?;
+        Ok((opened.engine, opened.on.to_string()))
     }
 
     /// Refuses what does not go together, with that precision.
     pub(crate) fn check(&self, precision: Precision) -> Result<(), Failure> {
-        let takes_gpu = matches!(self.engine, EngineName::Gpu | EngineName::Auto);
-        if self.adapter.is_some() && !takes_gpu {
+        let EngineName(Some(kind)) = self.engine else { return Ok(()) };
+        if self.adapter.is_some() && !kind.needs_gpu() {
             return Err(Failure::input(anyhow!("--adapter goes with --engine gpu or auto")));
         }
-        if precision == Precision::Fast && !takes_gpu {
+        if !kind.takes(precision) {
             return Err(Failure::input(anyhow!(
                 "precision fast is one of the engine gpu: give --engine gpu or auto with it, or take precision certified"
             )));
@@ -101,64 +107,36 @@ impl EngineArgs {
     /// Opens the engine asked for, with a precision that was settled elsewhere.
     pub(crate) fn open_for(&self, precision: Precision, model: &Arc<Model>) -> Result<Opened, Failure> {
         self.check(precision)?;
-        let one_thread = || "one thread".to_owned();
-        match (self.engine, &self.adapter) {
-            (_, Some(name)) => Ok(self.gpu(&named(name), precision, model)?),
-            (EngineName::Gpu, None) => Ok(self.gpu(&AdapterChoice::Best, precision, model)?),
-            (EngineName::Auto, None) if precision == Precision::Fast => {
-                Ok(self.gpu(&AdapterChoice::Best, precision, model)?)
+        let options =
+            Options { precision, window: self.window.map_or(WINDOW, |w| w as usize), keep_all: self.keep_all };
+        let choice = self.adapter.as_deref().map_or(AdapterChoice::Best, named);
+        let opened = match (self.engine.0, &self.adapter) {
+            (None, None) => open_best(model.clone(), &options)?,
+            (kind, _) => {
+                let kind = kind.unwrap_or(&GPU);
+                let device = kind.needs_gpu().then(|| Device::open(&choice)).transpose()?;
+                kind.open(model.clone(), device, &options)?
             }
-            (EngineName::Auto, None) => Ok(self.gpu(&AdapterChoice::Real, precision, model).unwrap_or_else(|error| {
-                let why = match error {
-                    GpuError::NoAdapter { .. } => {
-                        let faults = driver_faults().into_iter().map(|fault| format!(", and {fault}"));
-                        "there is no real GPU here".to_owned() + &faults.collect::<String>()
-                    }
-                    other => other.to_string(),
-                };
-                say!("engine: cpu, since {why} (`tautline adapters` lists what there is)");
-                self.cpu(model)
-            })),
-            (EngineName::Cpu, None) => Ok(self.cpu(model)),
-            (EngineName::Reference, None) => Ok((Box::new(Reference::new(model.clone())), one_thread())),
-            (EngineName::Funnel, None) => Ok((Box::new(Funnel::new(model.clone())), threads())),
-            (EngineName::Note, None) => Ok((Box::new(Note::new(model.clone())), one_thread())),
-        }
-    }
-
-    fn gpu(&self, choice: &AdapterChoice, precision: Precision, model: &Arc<Model>) -> Result<Opened, GpuError> {
-        let device = Device::open(choice)?;
-        let on = device.summary().to_string();
-        let notes = notes(choice, &device);
-        let engine: Box<dyn Engine> = match (precision, self.keep_all) {
-            (Precision::Certified, false) => Box::new(Gpu::new(device, model.clone())?.window(self.window())),
-            (Precision::Certified, true) => Box::new(Gpu::new(device, model.clone())?.window(self.window()).keep_all()),
-            (Precision::Fast, false) => Box::new(FastGpu::new(device, model.clone())?.window(self.window())),
-            (Precision::Fast, true) => Box::new(FastGpu::new(device, model.clone())?.window(self.window()).keep_all()),
         };
-        say!("engine: gpu on {on}");
-        notes.iter().for_each(|note| say!("{note}"));
-        if precision == Precision::Fast {
-            say!("note: precision fast: f32 decides alone, so ropes can be wrong");
+        if let Why::NoRealGpu(error) = &opened.why {
+            let why = match error {
+                EngineError::Gpu(GpuError::NoAdapter { .. }) => {
+                    let faults = driver_faults().into_iter().map(|fault| format!(", and {fault}"));
+                    "there is no real GPU here".to_owned() + &faults.collect::<String>()
+                }
+                other => other.to_string(),
+            };
+            say!("engine: {}, since {why} (`tautline adapters` lists what there is)", opened.kind.name);
         }
-        Ok((engine, on))
-    }
-
-    fn cpu(&self, model: &Arc<Model>) -> Opened {
-        let mut engine = Cpu::new(model.clone()).window(self.window());
-        if self.keep_all {
-            engine = engine.keep_all();
+        if let RunsOn::Device(device) = &opened.on {
+            say!("engine: {} on {}", opened.kind.name, opened.on);
+            notes(&choice, device).iter().for_each(|note| say!("{note}"));
+            if precision == Precision::Fast {
+                say!("note: precision fast: f32 decides alone, so ropes can be wrong");
+            }
         }
-        (Box::new(engine), threads())
+        Ok(opened)
     }
-
-    fn window(&self) -> usize {
-        self.window.map_or(WINDOW, |w| w as usize)
-    }
-}
-
-fn threads() -> String {
-    format!("{} threads", rayon::current_num_threads())
 }
 
 /// The adapter that `--adapter` means.

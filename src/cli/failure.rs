@@ -10,6 +10,7 @@ use tautline::gpu::GpuError;
 use tautline::output::WriteError;
 use tautline::picture::DrawError;
 use tautline::scene::AnchorError;
+use tautline::session::SessionError;
 use tautline::stream::StreamError;
 use tautline::study::{PlanError, StateError};
 
@@ -123,7 +124,9 @@ impl From<EngineError> for Failure {
         match error {
             EngineError::Gpu(error) => error.into(),
             EngineError::Stopped => Failure::interrupted(false),
-            EngineError::Unfit { .. } => Failure::input(error.into()),
+            EngineError::Unfit { .. } | EngineError::NoDevice { .. } | EngineError::Precision { .. } => {
+                Failure::input(error.into())
+            }
         }
     }
 }
@@ -136,6 +139,17 @@ impl From<StreamError> for Failure {
             StreamError::Write(error) => error.into(),
             StreamError::Violation(_) => Failure::input(error.into()),
             StreamError::Ended => Failure::internal(error.into()),
+        }
+    }
+}
+
+impl From<SessionError> for Failure {
+    fn from(error: SessionError) -> Self {
+        match error {
+            SessionError::Engine(error) => error.into(),
+            SessionError::Write(error) => error.into(),
+            error if error.is_input() => Failure::input(error.into()),
+            error => Failure::internal(error.into()),
         }
     }
 }

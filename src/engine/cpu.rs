@@ -4,13 +4,27 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::table::Open;
 use super::windows::Windows;
-use super::{Engine, EngineError, Job, Phase, WINDOW};
+use super::{Engine, EngineError, EngineKind, Job, Phase, Precision, Promise, WINDOW};
 use crate::candidates::{List, Lists, ROOM, Simd, Slopes};
 use crate::rope::TraceRecord;
 use crate::scene::{Model, Pivot};
 use crate::trace::{SettledTrace, bounds};
 use crate::visibility::Scratch;
+
+/// The engine for machines without a GPU.
+pub static CPU: EngineKind = EngineKind {
+    name: "cpu",
+    about: "The same on threads",
+    precisions: &[Precision::Certified],
+    asks: true,
+    promise: Promise::Events,
+    open: Open::Threads(|model, options| {
+        let engine = Cpu::new(model).window(options.window);
+        Box::new(if options.keep_all { engine.keep_all() } else { engine })
+    }),
+};
 
 /// After how many steps of a trace the job is told of them, so that the threads do not fight for its counter.
 const TELL: usize = 1 << 12;
@@ -66,7 +80,7 @@ impl Cpu {
 
 impl Engine for Cpu {
     fn name(&self) -> &'static str {
-        "cpu"
+        CPU.name
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {

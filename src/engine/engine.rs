@@ -1,6 +1,7 @@
 //! What every engine does.
 
 use std::convert::Infallible;
+use std::error::Error;
 
 use super::{Job, Precision};
 use crate::gpu::GpuError;
@@ -46,7 +47,7 @@ pub trait Engine: Send {
     fn forget(&mut self) {}
 }
 
-/// Why an engine gave no result.
+/// Why an engine cannot be opened, or gave no result.
 #[derive(Debug, thiserror::Error)]
 pub enum EngineError {
     /// The job was stopped before it was done.
@@ -58,9 +59,24 @@ pub enum EngineError {
         /// Which engine.
         engine: &'static str,
         /// What it cannot take.
-        why: String,
+        #[source]
+        why: Box<dyn Error + Send + Sync>,
     },
-    /// The GPU failed.
+    /// It runs on a GPU, and was given none.
+    #[error("the engine {engine} runs on a GPU, and there is none")]
+    NoDevice {
+        /// Which engine.
+        engine: &'static str,
+    },
+    /// It cannot be had in this precision.
+    #[error("the engine {engine} has no precision {}", precision.name())]
+    Precision {
+        /// Which engine.
+        engine: &'static str,
+        /// In which precision.
+        precision: Precision,
+    },
+    /// The GPU failed, or exact ropes cannot rely on it.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }

@@ -7,10 +7,21 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::progress::Progress;
-use super::{Engine, EngineError, Job, Precision};
+use super::table::Open;
+use super::{Engine, EngineError, EngineKind, Job, Precision, Promise};
 use crate::rope::{EventKind, Side, TraceRecord};
 use crate::scene::Model;
 use crate::trace::SettledTrace;
+
+/// The baseline.
+pub static NOTE: EngineKind = EngineKind {
+    name: "note",
+    about: "The seed note's listing 1, as written: wrong on purpose, for comparison",
+    precisions: &[],
+    asks: false,
+    promise: Promise::Nothing,
+    open: Open::Thread(|model| Box::new(Note::new(model))),
+};
 
 /// The listing multiplies by `Inf`; an infinite factor makes NaN of a difference of zero, so it must be read as a number
 /// that is large enough.
@@ -43,7 +54,7 @@ type Ray = (DVec2, DVec2);
 
 impl Engine for Note {
     fn name(&self) -> &'static str {
-        "note"
+        NOTE.name
     }
 
     fn precision(&self) -> Option<Precision> {

@@ -3,10 +3,21 @@
 use std::sync::Arc;
 
 use super::progress::Progress;
-use super::{Engine, EngineError, Job};
+use super::table::Open;
+use super::{Engine, EngineError, EngineKind, Job, Precision, Promise};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
+
+/// The arbiter.
+pub static REFERENCE: EngineKind = EngineKind {
+    name: "reference",
+    about: "One trace and one step after the other, every vertex tried: the arbiter",
+    precisions: &[Precision::Certified],
+    asks: false,
+    promise: Promise::Events,
+    open: Open::Thread(|model| Box::new(Reference::new(model))),
+};
 
 /// The engine that all others are checked against. O(vertices) for each step and each event, on one thread.
 #[derive(Clone)]
@@ -23,7 +34,7 @@ impl Reference {
 
 impl Engine for Reference {
     fn name(&self) -> &'static str {
-        "reference"
+        REFERENCE.name
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {

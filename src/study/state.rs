@@ -6,6 +6,7 @@ use std::fs;
 use std::io::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
@@ -47,6 +48,18 @@ impl Shard {
     /// How many of `blocks` blocks are its own.
     pub fn count(self, blocks: u64) -> u64 {
         (blocks + u64::from(self.of) - 1).saturating_sub(u64::from(self.number)) / u64::from(self.of)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    /// Reads K/N.
+    fn from_str(text: &str) -> Result<Shard, String> {
+        let wrong = || "give K/N with K from 0 to N - 1, such as 0/4".to_owned();
+        let (number, of) = text.split_once('/').ok_or_else(wrong)?;
+        let [number, of] = [number, of].map(|n| n.parse::<u32>().map_err(|_| wrong()));
+        Shard::new(number?, of?).ok_or_else(wrong)
     }
 }
 

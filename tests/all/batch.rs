@@ -11,7 +11,8 @@ use tautline::rope::TraceRecord;
 use tautline::scene::{Model, Scene, read_scene};
 use tautline::trace::{SettledTrace, Trace, settle};
 
-use crate::support::{posts, software};
+use crate::engine_table::Subject;
+use crate::support::{self, cases, posts, software};
 
 fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
     engine.evaluate(traces, &Job::new()).unwrap()
@@ -33,12 +34,11 @@ fn example(walker: Walker, count: u64) -> (Arc<Model>, Vec<SettledTrace>) {
     (model, traces)
 }
 
-/// Compares both batch engines with the reference, which must have met events for that to mean anything.
+/// Compares all engines with the reference, which must have met events for that to mean anything.
 fn agree(model: &Arc<Model>, traces: &[SettledTrace]) {
     let truth = run(&mut Reference::new(model.clone()), traces);
     assert!(truth.iter().any(|r| r.events.len() > 4), "nothing happened to compare");
-    assert_eq!(run(&mut Cpu::new(model.clone()), traces), truth);
-    assert_eq!(run(&mut Gpu::new(software(), model.clone()).unwrap(), traces), truth);
+    Subject::usual().iter().for_each(|subject| subject.check(model, traces, &truth, &subject.run(model, traces)));
     assert_eq!(run(&mut gpu(model, 1 << 13), traces), truth);
 }
 
@@ -55,29 +55,19 @@ fn batches_larger_than_the_slots() {
     }
 }
 
-#[test]
-fn one_engine_serves_batch_after_batch() {
-    let (model, traces) = example(Walker { step: 0.3, steps: 100, seed: 7 }, 20);
-    let mut engine = gpu(&model, 16);
-    let truth = run(&mut Reference::new(model.clone()), &traces);
-    assert_eq!(run(&mut engine, &traces[..3]), truth[..3]);
-    assert_eq!(run(&mut engine, &traces), truth);
-}
-
 /// Whatever thread a trace comes to, and after whatever other trace.
 #[test]
-fn the_funnel_of_a_trace_does_not_depend_on_the_others() {
+fn the_final_rope_of_a_trace_does_not_depend_on_the_others() {
     let (model, traces) = example(Walker { step: 0.3, steps: 200, seed: 9 }, 60);
-    for mut engine in [Funnel::new(model.clone()), Funnel::new(model.clone()).final_only()] {
-        let alone: Vec<_> = traces.iter().map(|t| run(&mut engine, std::slice::from_ref(t)).remove(0)).collect();
-        assert!(alone.iter().any(|r| r.events.len() > 4), "nothing happened to compare");
-        let backwards: Vec<_> = traces.iter().rev().cloned().collect();
-        for threads in [1, 2, 5] {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            assert_eq!(pool.install(|| run(&mut engine, &traces)), alone, "{threads} threads");
-            let records = pool.install(|| run(&mut engine, &backwards));
-            assert!(records.iter().rev().eq(&alone), "{threads} threads, backwards");
-        }
+    let mut engine = Funnel::new(model).final_only();
+    let alone: Vec<_> = traces.iter().map(|t| run(&mut engine, std::slice::from_ref(t)).remove(0)).collect();
+    assert!(alone.iter().any(|r| r.events.len() > 4), "nothing happened to compare");
+    let backwards: Vec<_> = traces.iter().rev().cloned().collect();
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert_eq!(pool.install(|| run(&mut engine, &traces)), alone, "{threads} threads");
+        let records = pool.install(|| run(&mut engine, &backwards));
+        assert!(records.iter().rev().eq(&alone), "{threads} threads, backwards");
     }
 }
 
@@ -98,51 +88,6 @@ fn the_funnels_frame_grows_with_the_traces() {
             records.into_iter().map(|r| (r.length, r.max_length, r.wraps, r.max_depth)).collect::<Vec<_>>()
         });
         assert_eq!(found, truth);
-    }
-}
-
-#[test]
-fn windows_of_any_bound_change_nothing() {
-    let (model, traces) = example(Walker { step: 0.2, steps: 300, seed: 8 }, 12);
-    let truth = run(&mut Reference::new(model.clone()), &traces);
-    for window in [1, 2, 5, 64, 1000] {
-        assert_eq!(run(&mut gpu(&model, 64).window(window), &traces), truth, "window {window}");
-        assert_eq!(run(&mut Cpu::new(model.clone()).window(window), &traces), truth, "window {window}");
-    }
-}
-
-#[test]
-fn empty_batches_and_traces_of_length_one() {
-    let (model, _) = example(Walker { step: 0.3, steps: 1, seed: 1 }, 1);
-    let anchor = model.anchor();
-    let one = |id, at| Trace { id, points: vec![at] };
-    let traces = settled(&model, &[one(0, anchor), one(4, anchor + DVec2::new(0.5, 0.1)), one(9, anchor)]);
-    let truth = run(&mut Reference::new(model.clone()), &traces);
-    assert_eq!(
-        truth.iter().map(|r| (r.trace, r.steps, r.depth)).collect::<Vec<_>>(),
-        [(0, 0, 0), (4, 0, 0), (9, 0, 0)]
-    );
-    assert_eq!(truth[1].length, anchor.distance(anchor + DVec2::new(0.5, 0.1)));
-    for engine in [&mut gpu(&model, 8) as &mut dyn Engine, &mut Cpu::new(model.clone())] {
-        assert_eq!(run(engine, &traces), truth);
-        assert_eq!(run(engine, &[]), []);
-    }
-}
-
-#[test]
-fn a_scene_without_walls() {
-    let model = Arc::new(Model::new(Scene::default(), Some(DVec2::new(1.0, 2.0))).unwrap());
-    let points = vec![DVec2::new(4.0, 6.0), DVec2::new(1.0, 3.0)];
-    let traces = settled(&model, &[Trace { id: 0, points }]);
-    for engine in [
-        &mut gpu(&model, 8) as &mut dyn Engine,
-        &mut Cpu::new(model.clone()),
-        &mut Reference::new(model.clone()),
-        &mut Funnel::new(model.clone()),
-        &mut Note::new(model.clone()),
-    ] {
-        let r = run(engine, &traces).remove(0);
-        assert_eq!((r.length, r.max_length, r.depth, r.pull), (1.0, 5.0, 0, Some(-DVec2::Y)), "{}", engine.name());
     }
 }
 
@@ -202,19 +147,6 @@ fn lists_of_several_pages() {
     assert_eq!(run(&mut gpu(&model, 64).keep_all(), &traces), run(&mut Reference::new(model.clone()), &traces));
 }
 
-#[test]
-fn a_stopped_job_ends_early() {
-    let (model, traces) = example(Walker { step: 0.3, steps: 100, seed: 1 }, 4);
-    for engine in
-        [&mut gpu(&model, 2) as &mut dyn Engine, &mut Cpu::new(model.clone()), &mut Reference::new(model.clone())]
-    {
-        let job = Job::new();
-        job.stop();
-        assert!(matches!(engine.evaluate(&traces, &job), Err(EngineError::Stopped)), "{}", engine.name());
-        assert_eq!(job.steps(), 0);
-    }
-}
-
 /// Lists come and go within a budget that holds a few of them only.
 #[test]
 fn lists_that_do_not_fit_the_budget_are_made_again() {
@@ -239,27 +171,30 @@ fn lists_that_do_not_fit_the_budget_are_made_again() {
 }
 
 #[test]
-fn a_stopped_funnel_ends_early_and_one_that_is_not_counts_all_steps() {
+fn a_stopped_funnel_of_final_ropes_ends_early_and_one_that_is_not_counts_all_steps() {
     let (model, traces) = example(Walker { step: 0.01, steps: 5000, seed: 1 }, 3);
-    for mut engine in [Funnel::new(model.clone()), Funnel::new(model.clone()).final_only()] {
-        let job = Job::new();
-        job.stop();
-        assert!(matches!(engine.evaluate(&traces, &job), Err(EngineError::Stopped)));
-        assert_eq!(job.steps(), 0);
-        let job = Job::new();
-        engine.evaluate(&traces, &job).unwrap();
-        assert_eq!(job.steps(), 15_000);
-    }
+    let mut engine = Funnel::new(model).final_only();
+    let job = Job::new();
+    job.stop();
+    assert!(matches!(engine.evaluate(&traces, &job), Err(EngineError::Stopped)));
+    assert_eq!(job.steps(), 0);
+    let job = Job::new();
+    engine.evaluate(&traces, &job).unwrap();
+    assert_eq!(job.steps(), 15_000);
 }
 
+/// The golden ropes where the device is asked about every pivot.
 #[test]
-fn the_funnel_of_a_scene_without_walls_is_straight() {
-    let model = Arc::new(Model::new(Scene::default(), Some(DVec2::new(1.0, 2.0))).unwrap());
-    let points = vec![DVec2::new(4.0, 6.0), DVec2::new(1.0, 3.0)];
-    let traces = settled(&model, &[Trace { id: 0, points }, Trace { id: 1, points: vec![model.anchor()] }]);
-    let records = run(&mut Funnel::new(model.clone()), &traces);
-    assert_eq!((records[0].length, records[0].max_length, records[0].pull), (1.0, 5.0, Some(-DVec2::Y)));
-    assert_eq!((records[1].length, records[1].max_length, records[1].pull), (0.0, 0.0, None));
+fn golden_ropes_from_the_device() {
+    let (mut judged, mut wrong) = (0, vec![]);
+    for case in cases() {
+        let model = case.model();
+        let (n, w) = case.differences(&model, &run(&mut support::gpu(&model), &case.settled(&model)));
+        judged += n;
+        wrong.extend(w);
+    }
+    assert!(wrong.is_empty(), "{} of {judged} ropes differ:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(judged > 15_000, "only {judged} ropes were judged");
 }
 
 /// Short walls along a ring, all ends of which see most others: looks and lists give up, and all vertices are tried. Their

@@ -6,7 +6,9 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 use tautline::candidates::{Lists, Simd};
-use tautline::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Note, Reference};
+use tautline::engine::{
+    Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Options, Promise, REFERENCE, Reference, WINDOW,
+};
 use tautline::example::extremes::{Extreme, FAMILIES};
 use tautline::example::{Walker, random_walls, settled_walks};
 use tautline::geometry::{COORDINATE_MAX, COORDINATE_MIN, between, orient};
@@ -17,6 +19,7 @@ use tautline::scene::Model;
 use tautline::trace::{SettledTrace, Trace, settle};
 
 use crate::corpus::bodies::engines::is_sound;
+use crate::engine_table::Subject;
 use crate::support::{gpu_on, software};
 
 macro_rules! families {
@@ -92,41 +95,37 @@ fn complaints(case: &Extreme) -> Vec<String> {
     // What has very many steps is evaluated once by each engine, and what a device would take minutes for, by the others.
     let is_short = traces.iter().map(SettledTrace::steps).sum::<usize>() <= 100_000;
     let suits_devices = truth.iter().all(|record| record.events.len() <= LONGEST_CHAIN);
-    compare("cpu", &mut Cpu::new(model.clone()));
     if is_short {
-        compare("cpu, window 1", &mut Cpu::new(model.clone()).window(1));
         compare("cpu, lists at once", &mut Cpu::with_lists(Lists::new(model.clone()).after(0)));
-        compare("cpu, all vertices", &mut Cpu::new(model.clone()).keep_all());
         compare("cpu, baseline", &mut Cpu::new(model.clone()).simd(Simd::baseline()));
     }
     if suits_devices {
-        compare("gpu", &mut gpu_on(device(), Lists::new(model.clone()).after(0)));
+        compare("gpu, lists at once", &mut gpu_on(device(), Lists::new(model.clone()).after(0)));
     }
-    if suits_devices && is_short {
-        compare("gpu, lists later", &mut Gpu::new(device(), model.clone()).unwrap());
-        compare("gpu, all vertices", &mut gpu_on(device(), Lists::new(model.clone()).keep_all()));
-    }
-    let sound = |engine: &mut dyn Engine| {
-        let records = run(engine, &traces);
-        assert_eq!(records.len(), traces.len());
-        traces.iter().zip(&records).for_each(|(trace, record)| is_sound(&model, trace, record));
-    };
-    sound(&mut Note::new(model.clone()));
-    if suits_devices {
-        sound(&mut FastGpu::new(device(), model.clone()).unwrap());
-    }
-    if suits_devices && is_short {
-        sound(&mut FastGpu::new(device(), model.clone()).unwrap().keep_all());
-    }
-    match Funnel::new(model.clone()).evaluate(&traces, &Job::new()) {
-        Ok(found) => {
-            wrong.extend(other_ropes(&model, case, &truth, &found));
-            wrong.extend(other_end(&truth, &run(&mut Funnel::new(model.clone()).final_only(), &traces)));
+    for subject in Subject::all().iter().filter(|subject| subject.kind != &REFERENCE) {
+        let Options { window, keep_all, .. } = subject.options;
+        let is_usual = window == WINDOW && !keep_all;
+        // Rounds of one leg each take devices too long.
+        let suits = !subject.kind.needs_gpu() || suits_devices && window == WINDOW;
+        if !suits || !is_usual && !is_short {
+            continue;
         }
-        Err(EngineError::Unfit { engine: "funnel", why }) if spans_too_much(case) => {
-            assert!(why.contains("triangulation"))
+        match (subject.open(&model).evaluate(&traces, &Job::new()), subject.promise()) {
+            (Ok(found), Promise::Events) => {
+                wrong.extend(difference(&truth, &found).map(|what| format!("{subject}, {what}")))
+            }
+            (Ok(found), Promise::Ropes) => {
+                wrong.extend(other_ropes(&model, case, &truth, &found).map(|what| format!("{subject}, {what}")))
+            }
+            (Ok(found), Promise::Nothing) => subject.check(&model, &traces, &truth, &found),
+            (Err(EngineError::Unfit { why, .. }), Promise::Ropes) if spans_too_much(case) => {
+                assert!(why.to_string().contains("triangulation"))
+            }
+            (Err(error), _) => wrong.push(format!("{subject}: {error}")),
         }
-        Err(error) => wrong.push(format!("funnel: {error}")),
+    }
+    if let Ok(found) = Funnel::new(model.clone()).final_only().evaluate(&traces, &Job::new()) {
+        wrong.extend(other_end(&truth, &found));
     }
     wrong
 }
@@ -186,14 +185,11 @@ fn other_ropes(model: &Arc<Model>, case: &Extreme, truth: &[TraceRecord], found:
             ropes
         });
         if let Some(step) = (0..right.len()).find(|&k| right[k] != wrong[k]) {
-            return Some(format!(
-                "funnel, trace {}, step {step}: {:?} instead of {:?}",
-                trace.id, wrong[step], right[step]
-            ));
+            return Some(format!("trace {}, step {step}: {:?} instead of {:?}", trace.id, wrong[step], right[step]));
         }
         let [right, wrong] = [truth, found].map(|record| TraceRecord { events: vec![], ..record.clone() });
         if right != wrong {
-            return Some(format!("funnel, trace {}: another final rope, or another longest one", trace.id));
+            return Some(format!("trace {}: another final rope, or another longest one", trace.id));
         }
     }
     None

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use serde::Deserialize;
 use tautline::candidates::{LISTS_BUDGET, Lists};
-use tautline::engine::{Engine, Gpu, Job};
+use tautline::engine::Gpu;
 use tautline::gpu::{AdapterChoice, Device, SWEEP_WGSL};
 use tautline::rope::{TraceRecord, replay};
 use tautline::scene::{Model, Scene};
@@ -76,24 +76,6 @@ impl Case {
         }
         (judged, wrong)
     }
-}
-
-/// Evaluates every golden case and compares every judged rope.
-pub(crate) fn compare_with_cases(engine: impl Fn(&Arc<Model>) -> Box<dyn Engine>) {
-    let (mut judged, mut wrong) = (0, vec![]);
-    for case in cases() {
-        let model = case.model();
-        let settled = case.settled(&model);
-        for trace in &settled {
-            assert_eq!(trace.violation(), None, "{}", case.name);
-        }
-        let records = engine(&model).evaluate(&settled, &Job::new()).unwrap();
-        let (n, w) = case.differences(&model, &records);
-        judged += n;
-        wrong.extend(w);
-    }
-    assert!(wrong.is_empty(), "{} of {judged} ropes differ:\n{}", wrong.len(), wrong[..wrong.len().min(20)].join("\n"));
-    assert!(judged > 15_000, "only {judged} ropes were judged");
 }
 
 /// The software adapter. A machine without one fails: the GPU engine is never left untested. So does one on which it is not

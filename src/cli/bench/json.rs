@@ -2,8 +2,9 @@
 
 use serde_json::{Map, Value, json};
 use tautline::engine::Phase;
-use tautline::report::bench::{Measured, Row};
-use tautline::report::{Environment, Spread};
+use tautline::environment::Environment;
+use tautline::report::Spread;
+use tautline::report::bench::{Contender, Measured, Row};
 
 /// The whole document.
 pub(super) fn report(environment: &Environment, seed: u64, measured: &Measured) -> Value {
@@ -29,15 +30,17 @@ fn row(row: &Row) -> Value {
     let (contender, setting) = (row.contender, &row.setting);
     let phases: Map<_, _> = Phase::ALL.iter().zip(row.phases).map(|(p, ns)| (p.name().to_owned(), json!(ns))).collect();
     json!({
-        "engine": contender.engine, "variant": contender.variant, "precision": contender.precision(),
+        "engine": contender.engine.name, "variant": contender.variant, "precision": contender.precision(),
         "scene": setting.scene.name(), "n": row.n, "remaining": row.remaining, "step": setting.step,
         "traces": row.traces, "batch": setting.traces,
-        "steps": row.steps, "window": contender.window(setting.window), "threads": contender.threads(),
+        "steps": row.steps, "window": contender.window(setting.window), "threads": contender.engine.threads(),
         "ns_per_step": spread(row.ns_per_step), "steps_per_second": row.steps_per_second(),
         "tests_per_step": row.tests_per_step, "tests_avoided_per_step": row.tests_avoided_per_step,
         "events_per_step": row.events_per_step, "events_per_second": row.events_per_second(),
         "phases": phases, "wrong_ropes": row.wrong_ropes,
-        "relative": row.relative.map(|r| json!({"to": "note", "ratio": r.ratio, "paired": spread(r.paired)})),
+        "relative": row.relative.map(|r| json!({
+            "to": Contender::BASELINE.engine.name, "ratio": r.ratio, "paired": spread(r.paired),
+        })),
     })
 }
 

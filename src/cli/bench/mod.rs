@@ -7,12 +7,12 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use glam::DVec2;
-use tautline::engine::WINDOW;
+use tautline::engine::{EngineKind, WINDOW};
+use tautline::environment::Environment;
 use tautline::gpu::{AdapterChoice, Device};
-use tautline::report::Environment;
 use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured, Plan, Setting, Sweep, measure};
 
-use super::engine::{named, notes};
+use super::engine::{measured, named, notes};
 use super::failure::Failure;
 use super::input::FileArgs;
 use super::parse::point;
@@ -50,8 +50,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "TIME", default_value = "1", value_parser = length)]
     seconds: f64,
     /// Only this engine; may be given several times
-    #[arg(long, value_name = "ENGINE", value_parser = ["gpu", "cpu", "funnel", "note", "reference"])]
-    engine: Vec<String>,
+    #[arg(long, value_name = "ENGINE", value_parser = measured(CONTENDERS.map(|c| c.engine)))]
+    engine: Vec<&'static EngineKind>,
     /// Which GPU: part of its name, its number in `tautline adapters`, or `software`
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
@@ -177,8 +177,8 @@ impl Args {
     /// Those asked for. A sweep over windows is for those that have them, beside the baseline.
     fn contenders(&self) -> Vec<Contender> {
         let wanted = |c: &Contender| {
-            let asked = self.engine.is_empty() || self.engine.iter().any(|engine| engine == c.engine);
-            asked && (self.sweep != Some(SweepName::Window) || c.windowed || c.is_baseline())
+            let asked = self.engine.is_empty() || self.engine.contains(&c.engine);
+            asked && (self.sweep != Some(SweepName::Window) || c.is_windowed() || c.is_baseline())
         };
         CONTENDERS.into_iter().filter(wanted).collect()
     }

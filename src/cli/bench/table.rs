@@ -1,8 +1,9 @@
 //! A bench as tables.
 
 use tautline::engine::Phase;
+use tautline::environment::Environment;
+use tautline::report::Spread;
 use tautline::report::bench::{Plan, Row, Setting, Sweep};
-use tautline::report::{Environment, Spread};
 
 use super::super::words::{counted, grouped, short};
 
@@ -20,14 +21,14 @@ pub(super) fn bench(environment: &Environment, setting: &Setting, plan: &Plan, r
     let name = |row: &Row| {
         let contender = row.contender;
         let [traces, steps] = [row.traces, row.steps].map(|count| grouped(count as u64));
-        [contender.engine.to_owned(), variant(row), contender.threads().to_string(), traces, steps]
+        [contender.engine.name.to_owned(), variant(row), contender.engine.threads().to_string(), traces, steps]
     };
     text += &table(&names, &["steps/s", "ns/step", "min..max", "x note", "min..max"], rows, name, |row| {
         let [ratio, paired] = relative(row);
         [rate(row.steps_per_second()), short(row.ns_per_step.median), range(row.ns_per_step), ratio, paired]
     });
     let names = ["engine", "variant"];
-    let name = |row: &Row| [row.contender.engine.to_owned(), variant(row)];
+    let name = |row: &Row| [row.contender.engine.name.to_owned(), variant(row)];
     let columns = ["tests/step", "avoided", "events/step", "events/s", "wrong ropes"];
     text += "\n";
     text += &table(&names, &columns, rows, name, |row| {
@@ -62,7 +63,7 @@ pub(super) fn sweep(environment: &Environment, sweep: Sweep, base: &Setting, pla
     };
     let name = |row: &Row| {
         let [traces, steps] = [row.traces, row.steps].map(|count| grouped(count as u64));
-        [value(row), row.contender.engine.to_owned(), row.contender.variant.to_owned(), traces, steps]
+        [value(row), row.contender.engine.name.to_owned(), row.contender.variant.to_owned(), traces, steps]
     };
     let columns = ["steps/s", "ns/step", "min..max", "tests/step", "events/step", "x note"];
     text += &table(&[swept, "engine", "variant", "traces", "steps"], &columns, rows, name, |row| {

@@ -1,19 +1,16 @@
 //! `tautline study`.
 
-mod folder;
-mod keeper;
-mod lock;
 mod merge;
-mod parts;
 mod replay;
 mod run;
 mod show;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use clap::Subcommand;
-use tautline::study::{EXAMPLE, Plan, Shard, Summary};
+use tautline::session::{Folder, RunReport};
+use tautline::study::{EXAMPLE, Plan, Summary};
 
 use super::failure::Failure;
 use super::look::write_whole;
@@ -45,7 +42,7 @@ enum Command {
     /// Write a study's file to start from, with comments
     #[command(after_help = examples::STUDY_INIT)]
     Init(InitArgs),
-    /// Print the JSON Schema of studies' files, or of their answers
+    /// Print the JSON Schema of studies' files, of their answers, or of what runs cost
     #[command(after_help = examples::STUDY_SCHEMA)]
     Schema(SchemaArgs),
 }
@@ -64,6 +61,8 @@ enum Described {
     Study,
     /// Its answer, summary.json
     Summary,
+    /// What a run of it cost, run.json
+    Run,
 }
 
 #[derive(Debug, clap::Args)]
@@ -84,6 +83,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Command::Schema(args) => print_json(&match args.of {
             Described::Study => Plan::schema(),
             Described::Summary => Summary::schema(),
+            Described::Run => RunReport::schema(),
         }),
     }
 }
@@ -97,10 +97,22 @@ fn init(args: &InitArgs) -> Result<(), Failure> {
     print(&format!("wrote {name}; run it with: tautline study run {name}\n"))
 }
 
-/// Reads K/N.
-fn shard(text: &str) -> Result<Shard, String> {
-    let wrong = || "give K/N with K from 0 to N - 1, such as 0/4".to_owned();
-    let (number, of) = text.split_once('/').ok_or_else(wrong)?;
-    let [number, of] = [number, of].map(|n| n.parse::<u32>().map_err(|_| wrong()));
-    Shard::new(number?, of?).ok_or_else(wrong)
+/// Where the study's files are.
+#[derive(Debug, clap::Args)]
+pub(crate) struct BaseArgs {
+    /// The folder from which the study's file names scene and traces, if it is another than when the study began
+    #[arg(long, value_name = "DIR")]
+    base: Option<PathBuf>,
+}
+
+impl BaseArgs {
+    /// The folder, if it is given.
+    fn folder(&self) -> Option<&Path> {
+        self.base.as_deref()
+    }
+}
+
+/// Says what there is to note of a study's folder.
+fn tell(folder: &Folder) {
+    folder.notes().iter().for_each(|note| say!("note: {note}"));
 }

@@ -9,8 +9,9 @@ use tautline::geometry::number as shortest;
 use tautline::gpu::{AdapterChoice, Device};
 use tautline::output::{EventWriter, check_output};
 use tautline::picture::Drawing;
+use tautline::session::look;
 
-use super::folder::{BaseArgs, Folder};
+use super::BaseArgs;
 use crate::cli::failure::Failure;
 use crate::cli::look::{Look, Target, write, write_whole};
 use crate::cli::print;
@@ -52,7 +53,7 @@ fn rows(number: u64, points: &[DVec2]) -> String {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let (_, study, _) = Folder::open(&args.folder, &args.base)?;
+    let (study, _) = look(&args.folder, args.base.folder())?;
     let plan = study.plan();
     if !plan.is_given() && args.trace >= plan.run.count() {
         let last = plan.run.count() - 1;

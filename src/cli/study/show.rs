@@ -4,14 +4,15 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use tautline::session::{RunCost, is_answer, look};
 use tautline::study::{AtWalls, Estimate, Stopped, Summary, quantity};
 
-use super::folder::{BaseArgs, Folder, SUMMARY};
-use super::run::pretty;
+use super::BaseArgs;
+use super::run::print_answer;
 use crate::cli::failure::Failure;
+use crate::cli::print;
 use crate::cli::trade;
 use crate::cli::words::{grouped, short};
-use crate::cli::{print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -25,26 +26,17 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let (folder, study, state) = Folder::open(&args.folder, &args.base)?;
+    let (study, state) = look(&args.folder, args.base.folder())?;
     let summary = state.summary(&study);
-    let answer = serde_json::to_value(&summary).map_err(|e| Failure::internal(e.into()))?;
-    let file = folder.file(SUMMARY);
-    let is_other = match std::fs::read(&file) {
-        Ok(bytes) => bytes != pretty(&answer).as_bytes(),
-        Err(_) => state.stopped() != Stopped::Unfinished,
-    };
-    if is_other {
-        let (file, shown) = (file.display(), folder.path().display());
-        say!("note: {file} does not hold this answer; `tautline study resume {shown}` writes it");
+    if !is_answer(&args.folder, &summary)? {
+        let (file, shown) = (args.folder.join("summary.json"), args.folder.display());
+        say!("note: {} does not hold this answer; `tautline study resume {shown}` writes it", file.display());
     }
-    if args.json {
-        return print_json(&answer);
-    }
-    print(&table(&summary, None))
+    if args.json { print_answer(&summary) } else { print(&table(&summary, None)) }
 }
 
 /// What people want to see first.
-pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> String {
+pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
     let mut text = String::new();
     let mut line = |text_of: std::fmt::Arguments<'_>| {
         let _ = text.write_fmt(text_of);
@@ -61,23 +53,23 @@ pub(super) fn table(summary: &Summary, run: Option<&serde_json::Value>) -> Strin
     if let Some(words) = standing(summary) {
         line(format_args!("{words}"));
     }
-    if let Some(seconds) = run.and_then(|run| run["seconds"].as_f64()) {
+    if let Some(run) = run {
         // Those of earlier runs took other seconds.
-        let rate = run.and_then(|run| run["traces"].as_f64()).unwrap_or(0.0) / seconds;
+        let rate = run.traces as f64 / run.seconds;
         line(format_args!(
             "{} on {} threads' time: {} traces/s",
-            duration(Duration::from_secs_f64(seconds)),
-            run.and_then(|r| r["threads"].as_u64()).unwrap_or(1),
+            duration(Duration::from_secs_f64(run.seconds)),
+            run.threads,
             short(rate)
         ));
     }
     if let Some(traded) = &summary.traded {
         line(format_args!("traded: {}", trade::words(summary.study.run.trade(), traded)));
     }
-    let most =
-        run.and_then(|run| run["scene"]["remaining"].as_array()?.iter().filter_map(serde_json::Value::as_u64).max());
-    if let (Some(tried), Some(all)) = (most, run.and_then(|run| run["scene"]["vertices"].as_u64())) {
-        line(format_args!("{} of {} wall ends tried", grouped(tried), grouped(all)));
+    if let Some(scene) = run.map(|run| &run.scene)
+        && let Some(&tried) = scene.remaining.iter().flatten().max()
+    {
+        line(format_args!("{} of {} wall ends tried", grouped(tried as u64), grouped(scene.vertices as u64)));
     }
     let confidence = 100.0 * summary.study.tallies.confidence;
     line(format_args!(

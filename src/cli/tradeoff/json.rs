@@ -1,7 +1,7 @@
 //! What was measured, as JSON.
 
 use serde_json::{Value, json};
-use tautline::report::Environment;
+use tautline::environment::Environment;
 use tautline::report::tradeoff::{Answer, Failed, Point, Setting, Tradeoff};
 
 use crate::cli::bench::json::{spread, surroundings};

@@ -8,17 +8,18 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use glam::DVec2;
-use tautline::engine::WINDOW;
+use tautline::engine::{EngineKind, WINDOW};
+use tautline::environment::Environment;
 use tautline::example::{Walker, walks};
 use tautline::gpu::Device;
 use tautline::output::{WholeFile, check_place};
 use tautline::picture;
-use tautline::report::Environment;
 use tautline::report::bench::{BenchScene, Gear, Plan};
 use tautline::report::tradeoff::{Method, Setting, Tradeoff, TradeoffError, Wanted, Work, tradeoff};
 use tautline::trace::{Trace, read_traces};
 
 use super::bench::{length, open_device};
+use super::engine::measured;
 use super::failure::Failure;
 use super::input::FileArgs;
 use super::look::write_whole;
@@ -73,8 +74,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "TOL", value_delimiter = ',', value_parser = above_zero)]
     simplify: Option<Vec<f64>>,
     /// Only this engine's methods; may be given several times
-    #[arg(long, value_name = "ENGINE", value_parser = ["gpu", "cpu", "funnel", "note", "reference"])]
-    engine: Vec<String>,
+    #[arg(long, value_name = "ENGINE", value_parser = measured(Method::ALL.map(|m| m.engine())))]
+    engine: Vec<&'static EngineKind>,
     /// Which GPU: part of its name, its number in `tautline adapters`, or `software`
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
@@ -120,7 +121,7 @@ impl Args {
     }
 
     fn methods(&self) -> Vec<Method> {
-        let asked = |m: &Method| self.engine.is_empty() || self.engine.iter().any(|engine| engine == m.engine());
+        let asked = |m: &Method| self.engine.is_empty() || self.engine.contains(&m.engine());
         Method::ALL.into_iter().filter(asked).collect()
     }
 

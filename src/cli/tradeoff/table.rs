@@ -1,6 +1,6 @@
 //! What was measured, as tables.
 
-use tautline::report::Environment;
+use tautline::environment::Environment;
 use tautline::report::tradeoff::{Answer, Failed, Point, Tradeoff};
 
 use crate::cli::bench::table::{aligned, range};

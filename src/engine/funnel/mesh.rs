@@ -2,16 +2,26 @@
 
 use glam::DVec2;
 use spade::handles::{DirectedEdgeHandle, FaceHandle, InnerTag};
-use spade::{DelaunayTriangulation, Point2, Triangulation};
+use spade::{DelaunayTriangulation, InsertionError, Point2, Triangulation};
 
 use super::triangle::{Door, NEXT, Triangle};
-use crate::engine::EngineError;
 use crate::geometry::{TracePoint, higher, left_of, lower};
 use crate::scene::Model;
 use crate::trace::{self, SettledTrace};
 
 /// A box: its lowest and highest x and y.
 type Bounds = (DVec2, DVec2);
+
+/// Why vertices cannot be triangulated.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum MeshError {
+    /// One is too small or too large beside the largest.
+    #[error("its triangulation takes no vertex like these: {0}")]
+    Vertex(#[from] InsertionError),
+    /// Two become one.
+    #[error("its triangulation cannot tell all vertices apart")]
+    Alike,
+}
 
 /// The triangulation. Its vertices are the model's and, numbered behind them, the four corners of a frame far outside,
 /// which no taut rope reaches.
@@ -26,7 +36,7 @@ pub(super) struct Mesh {
 
 impl Mesh {
     /// A mesh for `model` whose frame lies well outside of `bounds`, which hold all its vertices and its anchor.
-    pub(super) fn new(model: &Model, bounds: Bounds) -> Result<Mesh, EngineError> {
+    pub(super) fn new(model: &Model, bounds: Bounds) -> Result<Mesh, MeshError> {
         let frame = frame(bounds);
         let (low, high) = frame;
         let mut vertices = model.vertices().to_vec();
@@ -95,16 +105,14 @@ fn frame((low, high): Bounds) -> Bounds {
     (centre - 2.0 * half, centre + 2.0 * half)
 }
 
-fn triangulate(vertices: &[DVec2]) -> Result<DelaunayTriangulation<Point2<f64>>, EngineError> {
+fn triangulate(vertices: &[DVec2]) -> Result<DelaunayTriangulation<Point2<f64>>, MeshError> {
     // The library takes magnitudes from 2^-142 to 2^201: scaled by a power of two, which is exact.
     let size = vertices.iter().fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
     let scale = 2f64.powi(-(size.log2().floor() as i32));
     let scaled = vertices.iter().map(|p| Point2::new(p.x * scale, p.y * scale)).collect();
-    let unfit = |why: String| EngineError::Unfit { engine: "funnel", why };
-    let delaunay = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(scaled)
-        .map_err(|e| unfit(format!("its triangulation takes no vertex like these: {e}")))?;
+    let delaunay = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(scaled)?;
     if delaunay.num_vertices() != vertices.len() {
-        return Err(unfit("its triangulation cannot tell all vertices apart".to_owned()));
+        return Err(MeshError::Alike);
     }
     Ok(delaunay)
 }

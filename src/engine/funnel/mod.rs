@@ -19,11 +19,22 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use self::drag::Drag;
-use self::mesh::{Mesh, bounds};
-use super::{Engine, EngineError, Job};
+use self::mesh::{Mesh, MeshError, bounds};
+use super::table::Open;
+use super::{Engine, EngineError, EngineKind, Job, Precision, Promise};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
+
+/// The other method, which knows the rope after every step.
+pub static FUNNEL: EngineKind = EngineKind {
+    name: "funnel",
+    about: "Another method: triangulation, crossing word, funnel",
+    precisions: &[Precision::Certified],
+    asks: false,
+    promise: Promise::Ropes,
+    open: Open::Threads(|model, _| Box::new(Funnel::new(model))),
+};
 
 /// The engine that keeps the funnel of each trace's crossing word up to date, on all cores.
 ///
@@ -70,16 +81,17 @@ impl Funnel {
 
 impl Engine for Funnel {
     fn name(&self) -> &'static str {
-        "funnel"
+        FUNNEL.name
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
         job.go_on()?;
         let model = &*self.model;
+        let unfit = |why: MeshError| EngineError::Unfit { engine: FUNNEL.name, why: why.into() };
         let bounds = bounds(model, traces);
         let mesh = match self.mesh.take() {
             Some(mesh) if mesh.covers(bounds) => mesh,
-            _ => Mesh::new(model, bounds)?,
+            _ => Mesh::new(model, bounds).map_err(unfit)?,
         };
         let mesh = self.mesh.insert(mesh);
         let final_only = self.final_only;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::rounds;
+use super::{GPU, rounds};
 use crate::candidates::{LISTS_BUDGET, Lists};
 use crate::engine::windows::Windows;
 use crate::engine::{Engine, EngineError, Job, WINDOW};
@@ -76,7 +76,7 @@ impl Gpu {
 
 impl Engine for Gpu {
     fn name(&self) -> &'static str {
-        "gpu"
+        GPU.name
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {

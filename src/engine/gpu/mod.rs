@@ -7,5 +7,25 @@ mod fast;
 mod finding;
 mod rounds;
 
+use super::table::Open;
+use super::{EngineKind, Precision, Promise};
+
 pub use certified::Gpu;
 pub use fast::FastGpu;
+
+/// The product.
+pub static GPU: EngineKind = EngineKind {
+    name: "gpu",
+    about: "A compute shader finds candidates for many traces at once, the CPU decides exactly",
+    precisions: &[Precision::Certified, Precision::Fast],
+    asks: true,
+    promise: Promise::Events,
+    open: Open::Device(|device, model, options| {
+        Ok(match (options.precision, options.keep_all) {
+            (Precision::Certified, false) => Box::new(Gpu::new(device, model)?.window(options.window)),
+            (Precision::Certified, true) => Box::new(Gpu::new(device, model)?.window(options.window).keep_all()),
+            (Precision::Fast, false) => Box::new(FastGpu::new(device, model)?.window(options.window)),
+            (Precision::Fast, true) => Box::new(FastGpu::new(device, model)?.window(options.window).keep_all()),
+        })
+    }),
+};

@@ -2,7 +2,8 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::contender::{Contender, Promise};
+use super::contender::Contender;
+use crate::engine::Promise;
 use crate::rope::{Side, TraceRecord};
 
 /// Two engines that promise the same results and gave different ones.
@@ -46,7 +47,7 @@ impl Agreement {
     /// Compares the records of the first traces with what is known and learns from them, if `by` promises anything.
     /// Returns how many ropes at the end are wrong, for a contender that promises nothing.
     pub(super) fn check(&mut self, by: Contender, records: &[TraceRecord]) -> Result<Option<usize>, Disagreement> {
-        if by.promise == Promise::Nothing {
+        if by.promise() == Promise::Nothing {
             let wrong = |(record, known): (_, &Option<Known<Rope>>)| Some(rope(record) != known.as_ref()?.result);
             let judged: Option<Vec<bool>> = records.iter().zip(&self.ropes).map(wrong).collect();
             return Ok(judged.map(|judged| judged.into_iter().filter(|wrong| *wrong).count()));
@@ -56,7 +57,7 @@ impl Agreement {
                 (ours, theirs) if ours == theirs => format!("its {ours} turns at the end are different ones"),
                 (ours, theirs) => format!("depths {ours} and {theirs} at the end"),
             })?;
-            if by.promise == Promise::Events {
+            if by.promise() == Promise::Events {
                 agree(&mut self.events[i], by, record, events(record), |ours, theirs| match (ours.0, theirs.0) {
                     (ours, theirs) if ours == theirs => format!("its {ours} events are different ones"),
                     (ours, theirs) => format!("{ours} and {theirs} events"),
@@ -103,7 +104,7 @@ mod tests {
     use super::*;
     use crate::engine::{Engine, Job, Reference};
     use crate::example::{BuiltIn, Walker, settled_walks};
-    use crate::report::bench::CONTENDERS;
+    use crate::report::bench::{CPU, FUNNEL, GPU, NOTE, REFERENCE};
     use crate::scene::Model;
 
     fn records() -> Vec<TraceRecord> {
@@ -114,42 +115,38 @@ mod tests {
         records
     }
 
-    fn contender(engine: &str) -> Contender {
-        *CONTENDERS.iter().find(|c| c.engine == engine).unwrap()
-    }
-
     #[test]
     fn a_wrong_event_is_found_and_named() {
         let right = records();
         let mut agreement = Agreement::new(right.len());
         // The slow ones run on a few traces only.
-        agreement.check(contender("reference"), &right[..2]).unwrap();
-        agreement.check(contender("cpu"), &right).unwrap();
+        agreement.check(REFERENCE, &right[..2]).unwrap();
+        agreement.check(CPU, &right).unwrap();
         let mut wrong = right.clone();
         wrong[4].events.pop();
         let count = right[4].events.len();
-        let error = agreement.check(contender("gpu"), &wrong).unwrap_err();
+        let error = agreement.check(GPU, &wrong).unwrap_err();
         assert_eq!((error.one.as_str(), error.other.as_str(), error.trace), ("cpu (windows)", "gpu (windows)", 4));
         assert_eq!(error.what, format!("{count} and {} events", count - 1));
         let mut wrong = right.clone();
         wrong[1].events.swap(0, 1);
-        let error = agreement.check(contender("gpu"), &wrong).unwrap_err();
+        let error = agreement.check(GPU, &wrong).unwrap_err();
         assert_eq!((error.one.as_str(), error.trace), ("reference (one by one)", 1));
         // Events may differ for an engine that promises ropes only.
-        agreement.check(contender("funnel"), &wrong).unwrap();
+        agreement.check(FUNNEL, &wrong).unwrap();
     }
 
     #[test]
     fn a_wrong_rope_is_found_or_counted() {
         let right = records();
         let mut agreement = Agreement::new(right.len());
-        assert_eq!(agreement.check(contender("note"), &right), Ok(None));
-        agreement.check(contender("funnel"), &right).unwrap();
+        assert_eq!(agreement.check(NOTE, &right), Ok(None));
+        agreement.check(FUNNEL, &right).unwrap();
         let mut wrong = right.clone();
         let depth = wrong[3].wraps.len();
         wrong[3].wraps[0].0.x += 1e-9;
-        assert_eq!(agreement.check(contender("note"), &wrong), Ok(Some(1)));
-        let error = agreement.check(contender("gpu"), &wrong).unwrap_err();
+        assert_eq!(agreement.check(NOTE, &wrong), Ok(Some(1)));
+        let error = agreement.check(GPU, &wrong).unwrap_err();
         assert_eq!(error.what, format!("its {depth} turns at the end are different ones"));
         assert!(error.to_string().starts_with("funnel (every step) and gpu (windows) disagree on trace 3: its "));
     }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::agreement::Agreement;
-use super::contender::{CONTENDERS, Contender, Gear};
+use super::contender::{CPU, Contender, Gear};
 use super::runner::Runner;
 use super::setting::Work;
 use super::{BenchError, Setting};
@@ -141,7 +141,7 @@ pub fn measure(
         match ready(contender, work, gear, plan) {
             Ok(Some(runner)) => lanes.push(Lane::new(runner, work)?),
             Ok(None) => skipped.push((contender, "there is no GPU".to_owned())),
-            Err(EngineError::Unfit { why, .. }) => skipped.push((contender, why)),
+            Err(EngineError::Unfit { why, .. }) => skipped.push((contender, why.to_string())),
             Err(other) => return Err(other.into()),
         }
     }
@@ -168,10 +168,7 @@ pub fn measure(
 /// other contenders show.
 fn known(work: &Work, traces: &[SettledTrace]) -> Result<Agreement, BenchError> {
     let mut agreement = Agreement::new(traces.len());
-    let cpu = CONTENDERS.into_iter().find(|c| c.engine == "cpu");
-    if let Some(cpu) = cpu {
-        agreement.check(cpu, &Cpu::new(work.model.clone()).evaluate(traces, &Job::new())?)?;
-    }
+    agreement.check(CPU, &Cpu::new(work.model.clone()).evaluate(traces, &Job::new())?)?;
     Ok(agreement)
 }
 

@@ -17,7 +17,7 @@ mod setting;
 
 pub use agreement::Disagreement;
 pub use contender::{CONTENDERS, Contender, Gear};
-pub(super) use contender::{CPU, FAST, FUNNEL, FUNNEL_FINAL, GPU, NOTE, NOTE_FURTHEST, Promise, REFERENCE};
+pub(super) use contender::{CPU, FAST, FUNNEL, FUNNEL_FINAL, GPU, NOTE, NOTE_FURTHEST, REFERENCE};
 pub use error::BenchError;
 pub(super) use measure::order;
 pub use measure::{Measured, Plan, Progress, Row, Skipped, measure};

@@ -49,7 +49,7 @@ impl<'w> Runner<'w> {
     /// Opens the contender's engine; `None` if it needs a GPU and there is none.
     pub(super) fn open(contender: Contender, work: &'w Work, gear: &Gear) -> Result<Option<Self>, EngineError> {
         let Some(engine) = contender.open(work.model.clone(), gear)? else { return Ok(None) };
-        let steps = if contender.takes_many() { FEWEST_STEPS } else { work.setting.steps };
+        let steps = if contender.engine.takes_many() { FEWEST_STEPS } else { work.setting.steps };
         let mut runner = Runner { contender, work, engine, traces: 1, short: None, times: 1 };
         runner.shorten(steps);
         Ok(Some(runner))

@@ -114,7 +114,7 @@ pub fn tradeoff(
                 continue;
             }
             Ok(false) => "there is no GPU".to_owned(),
-            Err(EngineError::Unfit { why, .. }) => why,
+            Err(EngineError::Unfit { why, .. }) => why.to_string(),
             Err(other) => return Err(other.into()),
         };
         failed.push(lane.failed(why));
@@ -249,7 +249,7 @@ impl<'v> Lane<'v> {
         let (score, has_events) = (self.score.as_ref()?, self.method.has_events());
         Some(Point {
             method: self.method.name,
-            engine: self.method.engine(),
+            engine: self.method.engine().name,
             setting: self.variant.setting,
             n: self.variant.model.vertices().len(),
             traces: self.traces,

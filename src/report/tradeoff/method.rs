@@ -2,10 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::engine::{Engine, EngineError};
-use crate::report::bench::{
-    CPU, Contender, FAST, FUNNEL, FUNNEL_FINAL, GPU, Gear, NOTE, NOTE_FURTHEST, Promise, REFERENCE,
-};
+use crate::engine::{Engine, EngineError, EngineKind, Promise};
+use crate::report::bench::{CPU, Contender, FAST, FUNNEL, FUNNEL_FINAL, GPU, Gear, NOTE, NOTE_FURTHEST, REFERENCE};
 use crate::scene::Model;
 
 /// A way to turn traces into ropes.
@@ -29,8 +27,8 @@ impl Method {
         Method { name: "reference", contender: REFERENCE },
     ];
 
-    /// The engine's name, as the command line knows it.
-    pub fn engine(&self) -> &'static str {
+    /// The engine.
+    pub fn engine(&self) -> &'static EngineKind {
         self.contender.engine
     }
 
@@ -46,22 +44,22 @@ impl Method {
 
     /// Whether it writes down what happens on the way.
     pub(super) fn has_events(&self) -> bool {
-        self.contender.variant != FUNNEL_FINAL.variant
+        self.contender.has_events()
     }
 
     /// Whether it promises the reference's events.
     pub(super) fn promises_events(&self) -> bool {
-        self.contender.promise == Promise::Events
+        self.contender.promise() == Promise::Events
     }
 
     /// Whether it promises the reference's taut ropes.
     pub(super) fn promises_ropes(&self) -> bool {
-        self.contender.promise != Promise::Nothing
+        self.contender.promise() != Promise::Nothing
     }
 
     /// Whether it evaluates many traces at once.
     pub(super) fn takes_many(&self) -> bool {
-        self.contender.takes_many()
+        self.contender.engine.takes_many()
     }
 
     /// Makes the engine for `model`; `None` if it needs a GPU and there is none.

@@ -1,6 +1,6 @@
 //! What every trace really comes to, and how far from that a method is.
 
-use crate::engine::{Cpu, Engine, Job, Reference};
+use crate::engine::{Cpu, Engine, Job, REFERENCE, Reference};
 use crate::report::bench::Disagreement;
 use crate::rope::{Event, EventKind, Side, TraceRecord};
 use crate::scene::Model;
@@ -43,7 +43,7 @@ impl<'v> Truth<'v> {
         let asked = Reference::new(model.clone()).evaluate(&exact.traces[..vouched], &Job::new())?;
         let truth = Truth { model, records, vouched };
         match asked.iter().zip(&truth.records).find(|(one, other)| one != other) {
-            Some((record, _)) => Err(truth.disagreement("reference", record.trace).into()),
+            Some((record, _)) => Err(truth.disagreement(REFERENCE.name, record.trace).into()),
             None => Ok(truth),
         }
     }

@@ -1,20 +1,21 @@
-//! Any scene and any traces: all engines give the reference's ropes.
+//! Any scene and any traces: all engines of the table give what they promise.
 
-use std::sync::Arc;
-use std::sync::LazyLock;
-use std::{iter, slice};
+use std::iter;
+use std::sync::{Arc, LazyLock};
 
 use tautline::candidates::{LISTS_BUDGET, Lists};
-use tautline::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Reference};
+use tautline::engine::{
+    Cpu, ENGINES, Engine, EngineError, EngineKind, Gpu, Job, Options, Precision, Promise, Reference,
+};
 use tautline::gpu::{AdapterChoice, Device, SWEEP_WGSL};
-use tautline::rope::{TraceRecord, replay};
+use tautline::rope::{Side, TraceRecord, replay};
 use tautline::scene::Model;
 use tautline::simplify::simplify;
 use tautline::trace::SettledTrace;
 
 use super::recipe::recipe;
 
-/// `cpu`, as it is and with other windows and lists, and `funnel` against `reference`; then coarser traces.
+/// All engines that need no device, and `cpu` with other windows and lists; then coarser traces.
 pub(super) fn cpu(input: &[u8]) {
     let Some((model, traces)) = recipe(input) else { return };
     let truth = agree(&model, &traces);
@@ -27,21 +28,11 @@ pub(super) fn cpu(input: &[u8]) {
     for mut other in others {
         assert_eq!(run(&mut other, &traces), truth);
     }
-    for (trace, record) in traces.iter().zip(&truth) {
-        is_sound(&model, trace, record);
-        if trace.violation().is_none() {
-            match Funnel::new(model.clone()).evaluate(slice::from_ref(trace), &Job::new()) {
-                Ok(ropes) => assert_eq!(without_events(&ropes[0]), without_events(record)),
-                Err(EngineError::Unfit { .. }) => {}
-                Err(error) => panic!("{error}"),
-            }
-        }
-    }
+    traces.iter().zip(&truth).for_each(|(trace, record)| is_sound(&model, trace, record));
     coarser(&model, &traces, input.len());
 }
 
-/// The same traces on coarser terms, among the walls as they are and simplified: `cpu` against `reference`. How coarse, the input's
-/// length says.
+/// The same traces on coarser terms, among the walls as they are and simplified. How coarse, the input's length says.
 fn coarser(model: &Arc<Model>, traces: &[SettledTrace], length: usize) {
     let (low, high) = model.bounds();
     let tolerance = (high - low).max_element() * 2f64.powi(-(length as i32 % 24));
@@ -55,7 +46,7 @@ fn coarser(model: &Arc<Model>, traces: &[SettledTrace], length: usize) {
     }
 }
 
-/// `gpu` against `reference`, and whether the records of the fast one are sound.
+/// All engines that need a device, in every precision, and `gpu` where it asks about every pivot.
 pub(super) fn gpu(input: &[u8]) {
     static DEVICE: LazyLock<Device> =
         LazyLock::new(|| Device::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}")));
@@ -66,16 +57,43 @@ pub(super) fn gpu(input: &[u8]) {
     let mut gpu = gpu.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(run(&mut gpu, &traces), truth);
     assert_eq!(run(&mut gpu.keep_all().window(2), &traces), truth);
-    let mut fast = FastGpu::new(DEVICE.clone(), model.clone()).unwrap_or_else(|e| panic!("{e}"));
-    let records = run(&mut fast, &traces);
-    traces.iter().zip(&records).for_each(|(trace, record)| is_sound(&model, trace, record));
+    for kind in ENGINES.into_iter().filter(|kind| kind.needs_gpu()) {
+        for &precision in kind.precisions {
+            keeps_promise(kind, Some(DEVICE.clone()), precision, (&model, &traces), &truth);
+        }
+    }
 }
 
-/// The reference's records, which those of `cpu` must be.
+/// The reference's records, with which those of all engines that need no device agree as they promise.
 pub(super) fn agree(model: &Arc<Model>, traces: &[SettledTrace]) -> Vec<TraceRecord> {
     let truth = run(&mut Reference::new(model.clone()), traces);
-    assert_eq!(run(&mut Cpu::new(model.clone()), traces), truth);
+    for kind in ENGINES.into_iter().filter(|kind| !kind.needs_gpu()) {
+        keeps_promise(kind, None, Precision::default(), (model, traces), &truth);
+    }
     truth
+}
+
+/// Fails unless an engine gives what it promises, or does not take the scene.
+fn keeps_promise(
+    kind: &'static EngineKind,
+    device: Option<Device>,
+    precision: Precision,
+    (model, traces): (&Arc<Model>, &[SettledTrace]),
+    truth: &[TraceRecord],
+) {
+    let options = Options { precision, ..Options::default() };
+    let opened = kind.open(model.clone(), device, &options);
+    let found = opened.and_then(|mut opened| opened.engine.evaluate(traces, &Job::new()));
+    match found {
+        Ok(found) => {
+            assert_eq!(found.len(), traces.len());
+            for ((trace, truth), found) in traces.iter().zip(truth).zip(&found) {
+                is_as_promised(kind.promise(precision), model, trace, truth, found);
+            }
+        }
+        Err(EngineError::Unfit { .. }) => {}
+        Err(error) => panic!("{}: {error}", kind.name),
+    }
 }
 
 fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
@@ -85,6 +103,36 @@ fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
 /// All but the events: `funnel` knows no contacts that are passed straight.
 fn without_events(record: &TraceRecord) -> TraceRecord {
     TraceRecord { events: Vec::new(), ..record.clone() }
+}
+
+/// Fails unless a record is what its engine promises, given the reference's. Of traces that break the rules, only those that
+/// promise events promise anything.
+pub(crate) fn is_as_promised(
+    promise: Promise,
+    model: &Model,
+    trace: &SettledTrace,
+    truth: &TraceRecord,
+    found: &TraceRecord,
+) {
+    match promise {
+        Promise::Events => assert_eq!(found, truth),
+        Promise::Ropes if trace.breaks_rules() => {}
+        Promise::Ropes => {
+            assert_eq!(ropes(model, trace, found), ropes(model, trace, truth));
+            assert_eq!(without_events(found), without_events(truth));
+        }
+        Promise::Nothing => is_sound(model, trace, found),
+    }
+}
+
+/// The taut rope after every step.
+fn ropes(model: &Model, trace: &SettledTrace, record: &TraceRecord) -> Vec<Vec<(u32, Side)>> {
+    let ends = trace.ends();
+    let mut ropes = Vec::with_capacity(ends.len());
+    replay(model.anchor(), model.vertices(), ends.len(), &record.events, |k, rope| {
+        ropes.push(rope.taut(ends[k]).iter().map(|c| (c.vertex, c.side)).collect());
+    });
+    ropes
 }
 
 /// Every number is finite, and the numbers, the rope and the events of a record say the same.

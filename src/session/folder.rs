@@ -4,16 +4,16 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Mutex, PoisonError};
 
-use anyhow::anyhow;
 use serde::{Deserialize, Serialize};
-use tautline::output::{WholeFile, WriteError, remove_left_files};
-use tautline::study::{Check, Plan, Shard, State, Study};
 
+use super::error::{Difference, Note, SessionError};
 use super::lock::{LOCK, Lock};
-use super::parts::{PARTS, TRACES};
-use super::shard;
-use crate::cli::failure::Failure;
+use super::report::RunReport;
+use super::rows::{PARTS, TRACES};
+use crate::output::{WholeFile, WriteError, remove_left_files};
+use crate::study::{Check, Plan, Shard, State, Study};
 
 /// The answer.
 pub(super) const SUMMARY: &str = "summary.json";
@@ -33,36 +33,24 @@ struct Remembered {
     plan: Plan,
     /// The folder from which the plan's files are named.
     base: PathBuf,
-    /// Which part of the study it is: K/N.
-    shard: String,
+    /// Which part of the study it is, as K/N.
+    #[serde(with = "written_shard")]
+    shard: Shard,
     /// Of all before, as JSON without spaces: BLAKE3.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     check: String,
 }
 
 impl Remembered {
-    fn check(&self) -> Result<String, Failure> {
-        let bare = Remembered {
-            plan: self.plan.clone(),
-            base: self.base.clone(),
-            shard: self.shard.clone(),
-            check: String::new(),
-        };
-        let text = serde_json::to_vec(&bare).map_err(|e| Failure::internal(e.into()))?;
-        Ok(blake3::hash(&text).to_hex().to_string())
+    fn check(&self) -> Result<String, serde_json::Error> {
+        let bare =
+            Remembered { plan: self.plan.clone(), base: self.base.clone(), shard: self.shard, check: String::new() };
+        Ok(blake3::hash(&serde_json::to_vec(&bare)?).to_hex().to_string())
     }
 }
 
-/// Where the study's files are.
-#[derive(Debug, clap::Args)]
-pub(crate) struct BaseArgs {
-    /// The folder from which the study's file names scene and traces, if it is another than when the study began
-    #[arg(long, value_name = "DIR")]
-    base: Option<PathBuf>,
-}
-
 /// The folder in which a study lives.
-pub(super) struct Folder {
+pub struct Folder {
     path: PathBuf,
     /// Where this process writes to it.
     lock: Option<Lock>,
@@ -70,6 +58,7 @@ pub(super) struct Folder {
     made: Vec<PathBuf>,
     /// What would be lost if it were taken back.
     stage: AtomicU8,
+    notes: Mutex<Vec<Note>>,
 }
 
 /// Nothing of a study has been written here by this process.
@@ -82,13 +71,23 @@ const BEGUN: u8 = 2;
 impl Folder {
     /// A study's folder that is read.
     pub(super) fn at(path: &Path) -> Self {
-        Folder { path: path.to_owned(), lock: None, made: Vec::new(), stage: AtomicU8::new(UNTOUCHED) }
+        Folder {
+            path: path.to_owned(),
+            lock: None,
+            made: Vec::new(),
+            stage: AtomicU8::new(UNTOUCHED),
+            notes: Mutex::default(),
+        }
     }
 
-    /// A study's folder that is written to; it is made if it is not there.
-    pub(super) fn make(path: &Path) -> Result<Self, Failure> {
+    /// A folder that this process alone writes to from now on; it is made if it is not there.
+    ///
+    /// # Errors
+    ///
+    /// Another process that writes there, something else that stands there, and what the operating system says.
+    pub fn make(path: &Path) -> Result<Self, SessionError> {
         if path.exists() && !path.is_dir() {
-            return Err(Failure::input(anyhow!("{} is there already and is no folder; give another", path.display())));
+            return Err(SessionError::NoFolder { path: path.to_owned() });
         }
         let mut made: Vec<PathBuf> =
             path.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists()).map(Path::to_owned).collect();
@@ -96,30 +95,44 @@ impl Folder {
         let mut folder = Folder { made, ..Folder::at(path) };
         let lock = fs::create_dir_all(path)
             .map_err(|cause| WriteError::Io { path: path.to_owned(), cause }.into())
-            .and_then(|()| Lock::take(path));
+            .and_then(|()| Lock::take(path, |note| folder.note(note)));
         match lock {
             Ok(lock) => folder.lock = Some(lock),
-            Err(failure) => {
+            Err(error) => {
                 folder.remove_made();
-                return Err(failure);
+                return Err(error);
             }
         }
         folder.tidy();
         Ok(folder)
     }
 
-    /// A study's folder that is there and is written to.
-    pub(super) fn go_on(path: &Path) -> Result<Self, Failure> {
+    /// The same of a folder in which there is a study.
+    ///
+    /// # Errors
+    ///
+    /// As [`make`](Self::make), and a folder without a study.
+    pub fn open(path: &Path) -> Result<Self, SessionError> {
         let mut folder = Folder::at(path);
         // Before anything is made there: it is no study's folder if this fails.
-        fs::metadata(folder.file(STUDY)).map_err(|e| folder.no_study(&e))?;
-        folder.lock = Some(Lock::take(path)?);
+        fs::metadata(folder.file(STUDY)).map_err(|e| folder.no_study(e))?;
+        folder.lock = Some(Lock::take(path, |note| folder.note(note))?);
         folder.tidy();
         Ok(folder)
     }
 
-    pub(super) fn path(&self) -> &Path {
+    /// Where it is.
+    pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// What there was to note since this was asked last.
+    pub fn notes(&self) -> Vec<Note> {
+        std::mem::take(&mut self.notes.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    pub(super) fn note(&self, note: Note) {
+        self.notes.lock().unwrap_or_else(PoisonError::into_inner).push(note);
     }
 
     pub(super) fn file(&self, name: &str) -> PathBuf {
@@ -133,85 +146,58 @@ impl Folder {
     }
 
     /// Remembers the study.
-    pub(super) fn remember(&self, plan: &Plan, base: &Path, shard: Shard) -> Result<(), Failure> {
-        let base = base.canonicalize().map_err(|e| Failure::input(anyhow!("{}: {e}", base.display())))?;
-        let mut remembered = Remembered { plan: plan.clone(), base, shard: shard.to_string(), check: String::new() };
+    pub(super) fn remember(&self, plan: &Plan, base: &Path, shard: Shard) -> Result<(), SessionError> {
+        let base = base.canonicalize().map_err(|cause| SessionError::Base { path: base.to_owned(), cause })?;
+        let mut remembered = Remembered { plan: plan.clone(), base, shard, check: String::new() };
         remembered.check = remembered.check()?;
-        let text = serde_json::to_string_pretty(&remembered).map_err(|e| Failure::internal(e.into()))?;
-        self.write(STUDY, format!("{text}\n").as_bytes())
+        let text = serde_json::to_string_pretty(&remembered)?;
+        Ok(self.write(STUDY, format!("{text}\n").as_bytes())?)
     }
 
-    fn no_study(&self, e: &std::io::Error) -> Failure {
-        let file = self.file(STUDY);
-        Failure::input(anyhow!("{}: {e}; give the folder that `tautline study run` made", file.display()))
+    fn no_study(&self, cause: std::io::Error) -> SessionError {
+        SessionError::NoStudy { file: self.file(STUDY), cause }
     }
 
-    fn remembered(&self) -> Result<Remembered, Failure> {
-        let text = fs::read_to_string(self.file(STUDY)).map_err(|e| self.no_study(&e))?;
-        let fault = |what: &dyn std::fmt::Display| {
-            let file = self.file(STUDY);
-            let way_out = "`tautline study run` with the study's own file and this folder as --out writes it again";
-            Failure::input(anyhow!("{}: {what}; {way_out}", file.display()))
-        };
-        let remembered: Remembered = serde_json::from_str(&text).map_err(|e| fault(&format!("damaged: {e}")))?;
+    fn remembered(&self) -> Result<Remembered, SessionError> {
+        let text = fs::read_to_string(self.file(STUDY)).map_err(|e| self.no_study(e))?;
+        let damaged = |cause| SessionError::Damaged { file: self.file(STUDY), cause };
+        let remembered: Remembered = serde_json::from_str(&text).map_err(|e| damaged(Some(e)))?;
         if remembered.check != remembered.check()? {
-            return Err(fault(&"damaged, or made into another study by hand: its check sum is wrong"));
+            return Err(damaged(None));
         }
         Ok(remembered)
     }
 
-    /// Opens the study and its state, which are there.
-    pub(super) fn open(path: &Path, base: &BaseArgs) -> Result<(Self, Study, State), Failure> {
-        let folder = Folder::at(path);
-        let (study, _) = folder.study(base)?;
-        let state = folder.state(&study)?;
-        Ok((folder, study, state))
-    }
-
-    /// Opens the study, and tells the folder from which its files are named.
-    pub(super) fn study(&self, base: &BaseArgs) -> Result<(Study, PathBuf), Failure> {
+    /// Opens the study, and tells the folder from which its files are named: `base`, or else that as it began.
+    pub(super) fn study(&self, base: Option<&Path>) -> Result<(Study, PathBuf), SessionError> {
         let Remembered { plan, base: began, .. } = self.remembered()?;
-        let folder = base.base.clone().unwrap_or(began);
-        let study = Study::open(plan, &folder).map_err(|e| match &base.base {
-            None => Failure::input(anyhow!(
-                "{e}\n(the study's files are named from {}; if they have moved, give --base DIR)",
-                folder.display()
-            )),
-            Some(_) => e.into(),
-        })?;
+        let folder = base.map_or(began, Path::to_owned);
+        let study = Study::open(plan, &folder)
+            .map_err(|error| SessionError::Plan { error, began: base.is_none().then(|| folder.clone()) })?;
         Ok((study, folder))
     }
 
     /// How far a study is whose folder this is.
-    pub(super) fn state(&self, study: &Study) -> Result<State, Failure> {
-        State::load(&self.file(STATE), study).map_err(|e| {
-            if e.is_foreign() || !e.path.exists() {
-                return e.into();
-            }
-            let shown = self.path.display();
-            Failure::input(anyhow!("{e}; remove it to have `tautline study resume {shown}` begin again"))
+    pub(super) fn state(&self, study: &Study) -> Result<State, SessionError> {
+        State::load(&self.file(STATE), study).map_err(|error| {
+            let can_begin_again = !error.is_foreign() && error.path.exists();
+            SessionError::State { error, folder: can_begin_again.then(|| self.path.clone()) }
         })
     }
 
     /// How far a study is whose folder this is: at its beginning if no state is there.
-    pub(super) fn state_or_new(&self, study: &Study) -> Result<State, Failure> {
+    pub(super) fn state_or_new(&self, study: &Study) -> Result<State, SessionError> {
         if self.file(STATE).exists() {
             return self.state(study);
         }
-        let part = shard(&self.remembered()?.shard).map_err(|e| Failure::input(anyhow!(e)))?;
-        say!("note: {}: no state was saved, so the study begins", self.path.display());
+        let part = self.remembered()?.shard;
+        self.note(Note::Begins { folder: self.path.clone() });
         Ok(State::new(study, part))
     }
 
     /// How far the folder is with this part of this study; `None` if it holds nothing of it, nor of anything else.
-    pub(super) fn held(&self, study: &Study, part: Shard) -> Result<Option<State>, Failure> {
-        let shown = self.path.display();
-        let another = |how: &str| {
-            Failure::input(anyhow!(
-                "{shown} holds a study already, and another one: {how}; go on with that by `tautline study resume {shown}`, \
-                 or give another --out"
-            ))
-        };
+    pub(super) fn held(&self, study: &Study, part: Shard) -> Result<Option<State>, SessionError> {
+        let another = |difference| SessionError::Another { folder: self.path.clone(), difference };
         let remembered = self.remembered().ok();
         let difference = remembered.as_ref().map(|there| difference(&there.plan, study.plan()));
         if self.file(STATE).exists() {
@@ -220,19 +206,15 @@ impl Folder {
                     self.is_begun();
                     Ok(Some(state))
                 }
-                Ok(state) => Err(another(&format!("shard {}, and not {part}", state.shard()))),
-                Err(e) if e.is_foreign() => Err(another(&difference.flatten().unwrap_or_else(|| {
-                    "its scene or its traces are others, or another version has begun it".to_owned()
-                }))),
+                Ok(state) => Err(another(Difference::Shard { there: state.shard(), here: part })),
+                Err(e) if e.is_foreign() => Err(another(difference.flatten().unwrap_or(Difference::Inputs))),
                 Err(_) => self.state(study).map(Some),
             };
         }
-        let is_same = difference == Some(None) && remembered.is_some_and(|there| there.shard == part.to_string());
+        let is_same = difference == Some(None) && remembered.is_some_and(|there| there.shard == part);
         let there = [SUMMARY, RUN_REPORT, PAGE, TRACES, PARTS].map(|name| self.file(name));
         match there.iter().find(|file| file.exists()) {
-            Some(file) if !is_same => {
-                Err(Failure::input(anyhow!("{} is there already; give another --out", file.display())))
-            }
+            Some(file) if !is_same => Err(SessionError::Occupied { file: file.clone() }),
             found => {
                 self.stage.store(if found.is_some() { BEGUN } else { NEW }, Ordering::SeqCst);
                 Ok(None)
@@ -256,18 +238,18 @@ impl Folder {
     }
 
     /// What was said of the run before, if it is as it was written.
-    pub(super) fn run_report(&self, state: &State) -> Option<serde_json::Value> {
+    pub(super) fn run_report(&self, state: &State) -> Option<RunReport> {
         let bytes = fs::read(self.file(RUN_REPORT)).ok()?;
         let is_whole = state.kept.files.get(RUN_REPORT) == Some(blake3::hash(&bytes).as_bytes());
         is_whole.then(|| serde_json::from_slice(&bytes).ok())?
     }
 
     /// Writes a file of the folder, whole or not at all.
-    pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+    pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
         let path = self.file(name);
         let mut file = WholeFile::create(&path)?;
         file.write_all(bytes).map_err(|cause| WriteError::Io { path, cause })?;
-        Ok(file.finish_durably()?)
+        file.finish_durably()
     }
 
     /// From now on there is something that must not be lost.
@@ -277,7 +259,7 @@ impl Folder {
 
     /// Takes back what this process did here, unless there is something that must not be lost. What has taken the folder's place
     /// meanwhile is another's.
-    pub(super) fn take_back(&self) {
+    pub fn take_back(&self) {
         if self.lock.as_ref().is_some_and(|lock| !lock.is_in_place()) {
             return;
         }
@@ -306,9 +288,24 @@ pub(super) fn check(path: &Path) -> std::io::Result<Check> {
     Ok(hasher.finalize().into())
 }
 
+/// A shard as it is written on the command line.
+mod written_shard {
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    use crate::study::Shard;
+
+    pub(super) fn serialize<S: Serializer>(shard: &Shard, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(shard)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Shard, D::Error> {
+        String::deserialize(from)?.parse().map_err(D::Error::custom)
+    }
+}
+
 /// The first key in which two studies differ, with both values, whatever they write out.
-fn difference(there: &Plan, here: &Plan) -> Option<String> {
-    fn first(name: &str, there: &serde_json::Value, here: &serde_json::Value) -> Option<String> {
+fn difference(there: &Plan, here: &Plan) -> Option<Difference> {
+    fn first(name: &str, there: &serde_json::Value, here: &serde_json::Value) -> Option<Difference> {
         if let (Some(a), Some(b)) = (there.as_object(), here.as_object()) {
             let null = serde_json::Value::Null;
             let keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
@@ -318,7 +315,8 @@ fn difference(there: &Plan, here: &Plan) -> Option<String> {
             };
             return keys.filter(|key| !name.is_empty() || *key != "outputs").find_map(of);
         }
-        (there != here).then(|| format!("{name} is {there} there and {here} here"))
+        let difference = || Difference::Key { name: name.to_owned(), there: there.to_string(), here: here.to_string() };
+        (there != here).then(difference)
     }
     let [there, here] = [there, here].map(|plan| serde_json::to_value(plan).unwrap_or_default());
     first("", &there, &here)

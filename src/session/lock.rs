@@ -6,10 +6,8 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use anyhow::anyhow;
-use tautline::output::WriteError;
-
-use crate::cli::failure::Failure;
+use super::error::{Note, SessionError};
+use crate::output::WriteError;
 
 /// The file in a study's folder on which the lock lies. It stays there: whoever removed it could not know who waits for it.
 pub(super) const LOCK: &str = "lock";
@@ -24,7 +22,7 @@ pub(super) struct Lock {
 
 impl Lock {
     /// Takes the lock of a folder, which is there. An error if another process has it, and still has it after a moment.
-    pub(super) fn take(folder: &Path) -> Result<Self, Failure> {
+    pub(super) fn take(folder: &Path, mut note: impl FnMut(Note)) -> Result<Self, SessionError> {
         let path = folder.join(LOCK);
         let is_new = !path.exists();
         loop {
@@ -33,10 +31,7 @@ impl Lock {
             match patiently(|| file.try_lock()) {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(in_use(folder, &mut file)),
-                Err(TryLockError::Error(e)) => say!(
-                    "note: {}: the file system has no locks ({e}); see to it that nothing else writes there",
-                    folder.display()
-                ),
+                Err(TryLockError::Error(cause)) => note(Note::NoLocks { folder: folder.to_owned(), cause }),
             }
             // Who had it before may have removed the folder meanwhile.
             let mut lock = Lock { file, path: path.clone(), is_new };
@@ -50,7 +45,7 @@ impl Lock {
 
     /// Takes part in the lock of a folder that is only read, so that nobody writes to it meanwhile. `None` for one that has never
     /// been written to by a process with a lock.
-    pub(super) fn share(folder: &Path) -> Result<Option<File>, Failure> {
+    pub(super) fn share(folder: &Path) -> Result<Option<File>, SessionError> {
         let Ok(mut file) = File::open(folder.join(LOCK)) else { return Ok(None) };
         match patiently(|| file.try_lock_shared()) {
             Err(TryLockError::WouldBlock) => Err(in_use(folder, &mut file)),
@@ -93,13 +88,9 @@ fn is_same(_: &Metadata, _: &Metadata) -> bool {
     true
 }
 
-fn in_use(folder: &Path, file: &mut File) -> Failure {
+fn in_use(folder: &Path, file: &mut File) -> SessionError {
     let mut text = String::new();
     let read = file.take(20).read_to_string(&mut text);
-    let who = match read.ok().and_then(|_| text.trim().parse::<u32>().ok()) {
-        Some(process) => format!("process {process}"),
-        None => "another run".to_owned(),
-    };
-    let shown = folder.display();
-    Failure::input(anyhow!("{shown} is in use: {who} writes to it; wait for its end, or stop it"))
+    let process = read.ok().and_then(|_| text.trim().parse().ok());
+    SessionError::InUse { folder: folder.to_owned(), process }
 }

@@ -6,14 +6,12 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
-use tautline::output::{ResultWriter, merge_results};
-use tautline::rope::TraceRecord;
-use tautline::scene::Scene;
-use tautline::study::{Check, Part, State, Stopped, Study};
-
+use super::error::{Action, Note, RowsFault, SessionError};
 use super::folder::{Folder, check};
-use crate::cli::failure::Failure;
+use crate::output::{ResultWriter, WriteError, merge_results};
+use crate::rope::TraceRecord;
+use crate::scene::Scene;
+use crate::study::{Check, Part, State, Stopped, Study};
 
 /// The file that is there in the end, in the study's folder.
 pub(super) const TRACES: &str = "traces.parquet";
@@ -21,7 +19,7 @@ pub(super) const TRACES: &str = "traces.parquet";
 /// The folder of the parts, in the study's folder.
 pub(super) const PARTS: &str = "traces";
 
-pub(super) struct Parts {
+pub(super) struct Rows {
     folder: PathBuf,
     /// The scene in which the ropes are.
     scene: Scene,
@@ -31,7 +29,7 @@ pub(super) struct Parts {
     current: Option<(Range<u64>, ResultWriter)>,
 }
 
-impl Parts {
+impl Rows {
     /// Goes on where `state` does, of the study in `folder`, and tells which rows are to be computed again, by the places of their
     /// traces: the state then does not count on the files in which they were. What it does not know is dropped. No parts if all rows
     /// are in their place.
@@ -40,12 +38,12 @@ impl Parts {
         study: &Study,
         state: &mut State,
         notes: Vec<(&'static str, String)>,
-    ) -> Result<(Option<Self>, Vec<Range<u64>>), Failure> {
+    ) -> Result<(Option<Self>, Vec<Range<u64>>), SessionError> {
         let parts = folder.file(PARTS);
-        let failed = |e: std::io::Error| Failure::internal(anyhow!("cannot write {}: {e}", parts.display()));
+        let failed = |cause| SessionError::Rows { action: Action::Write, path: parts.clone(), cause };
         if let Some(sum) = state.kept.files.remove(TRACES)
             && state.stopped() != Stopped::Unfinished
-            && is_whole(&folder.file(TRACES), &sum)
+            && is_whole(folder, &folder.file(TRACES), &sum)
         {
             state.kept.files.insert(TRACES.to_owned(), sum);
             clear(folder)?;
@@ -57,7 +55,8 @@ impl Parts {
         let mut gaps = Vec::new();
         state.kept.parts.retain(|part| {
             let Range { start, end: to } = part.places;
-            let is_kept = start >= next && start < to && to <= end && is_whole(&path(&parts, start), &part.check);
+            let is_kept =
+                start >= next && start < to && to <= end && is_whole(folder, &path(&parts, start), &part.check);
             if is_kept {
                 gaps.push(next..start);
                 next = to;
@@ -74,11 +73,11 @@ impl Parts {
             }
         }
         let scene = study.models()[0].scene().clone();
-        Ok((Some(Parts { folder: parts, scene, notes, current: None }), gaps))
+        Ok((Some(Rows { folder: parts, scene, notes, current: None }), gaps))
     }
 
     /// Adds the rows of the traces from that at place `first` on.
-    pub(super) fn write(&mut self, first: u64, records: &[TraceRecord]) -> Result<(), Failure> {
+    pub(super) fn write(&mut self, first: u64, records: &[TraceRecord]) -> Result<(), WriteError> {
         if records.is_empty() {
             return Ok(());
         }
@@ -92,49 +91,46 @@ impl Parts {
         };
         assert_eq!(places.end, first, "rows come in their order");
         places.end += records.len() as u64;
-        Ok(writer.write_all(&self.scene, records)?)
+        writer.write_all(&self.scene, records)
     }
 
     /// Puts the rows since the last time in their place, and has the state know of them.
-    pub(super) fn close(&mut self, state: &mut State) -> Result<(), Failure> {
+    pub(super) fn close(&mut self, state: &mut State) -> Result<(), SessionError> {
         let Some((places, writer)) = self.current.take() else { return Ok(()) };
         writer.complete()?.finish_durably()?;
         let file = path(&self.folder, places.start);
-        let check = check(&file).map_err(|e| unread(&file, &e))?;
+        let check = check(&file).map_err(|cause| unread(&file, cause))?;
         state.kept.parts.push(Part { places, check });
         state.kept.parts.sort_by_key(|part| part.places.start);
         Ok(())
     }
 
     /// Puts all rows into one file, once the study is done, those of so many traces; the parts of which are these.
-    pub(super) fn finish(self, folder: &Folder, parts: &[Part], traces: u64) -> Result<Check, Failure> {
+    pub(super) fn finish(self, folder: &Folder, parts: &[Part], traces: u64) -> Result<Check, SessionError> {
         let (parts, whole): (Vec<PathBuf>, _) =
             (parts.iter().map(|part| path(&self.folder, part.places.start)).collect(), folder.file(TRACES));
         merge_results(&parts, &whole, &self.scene, &self.notes, traces)?;
-        check(&whole).map_err(|e| unread(&whole, &e))
+        check(&whole).map_err(|cause| unread(&whole, cause))
     }
 }
 
 /// Removes the parts, which are not needed any more.
-pub(super) fn clear(folder: &Folder) -> Result<(), Failure> {
+pub(super) fn clear(folder: &Folder) -> Result<(), SessionError> {
     let parts = folder.file(PARTS);
     match fs::remove_dir_all(&parts) {
-        Err(e) if parts.exists() => Err(Failure::internal(anyhow!("cannot remove {}: {e}", parts.display()))),
+        Err(cause) if parts.exists() => Err(SessionError::Rows { action: Action::Remove, path: parts, cause }),
         _ => Ok(()),
     }
 }
 
 /// The check sum of the rows of a shard that is done.
-pub(super) fn of_shard(folder: &Folder, state: &State) -> Result<PathBuf, Failure> {
+pub(super) fn of_shard(folder: &Folder, state: &State) -> Result<PathBuf, SessionError> {
     let file = folder.file(TRACES);
-    let fault = |what: &str| {
-        let shown = folder.path().display();
-        Failure::input(anyhow!("{}: {what}; `tautline study resume {shown}` writes it again", file.display()))
-    };
+    let fault = |fault| SessionError::ShardRows { file: folder.file(TRACES), folder: folder.path().to_owned(), fault };
     match (state.kept.files.get(TRACES), check(&file)) {
-        (None, _) => Err(fault("its rows are not all there")),
-        (Some(_), Err(e)) => Err(fault(&e.to_string())),
-        (Some(known), Ok(found)) if *known != found => Err(fault("damaged: its check sum is wrong")),
+        (None, _) => Err(fault(RowsFault::Missing)),
+        (Some(_), Err(cause)) => Err(fault(RowsFault::Unread(cause))),
+        (Some(known), Ok(found)) if *known != found => Err(fault(RowsFault::Damaged)),
         _ => Ok(file),
     }
 }
@@ -143,17 +139,17 @@ fn path(parts: &Path, first: u64) -> PathBuf {
     parts.join(format!("{first:012}.parquet"))
 }
 
-/// Whether a file is as it was written; says so if it is not.
-fn is_whole(file: &Path, known: &Check) -> bool {
-    let what = match check(file) {
+/// Whether a file is as it was written; notes it if it is not.
+fn is_whole(folder: &Folder, file: &Path, known: &Check) -> bool {
+    let fault = match check(file) {
         Ok(found) if found == *known => return true,
-        Ok(_) => "damaged: its check sum is wrong".to_owned(),
-        Err(e) => e.to_string(),
+        Ok(_) => RowsFault::Damaged,
+        Err(cause) => RowsFault::Unread(cause),
     };
-    say!("note: {}: {what}; its rows are computed again", file.display());
+    folder.note(Note::Again { file: file.to_owned(), fault });
     false
 }
 
-fn unread(file: &Path, e: &std::io::Error) -> Failure {
-    Failure::internal(anyhow!("cannot read {}: {e}", file.display()))
+fn unread(path: &Path, cause: std::io::Error) -> SessionError {
+    SessionError::Rows { action: Action::Read, path: path.to_owned(), cause }
 }

@@ -1,0 +1,75 @@
+//! The answer of a study, in its folder.
+
+use std::path::Path;
+
+use super::folder::{PAGE, RUN_REPORT, SUMMARY};
+use super::{Folder, RunReport, Session, SessionError, locked, pretty};
+use crate::picture;
+use crate::study::{State, Stopped, Study, Summary};
+
+/// How wide the pictures are as PNG, in pixels: two for each of the SVG's units.
+const WIDTH: u32 = 1600;
+
+impl Session {
+    /// Writes the answer so far, and what it cost: `summary.json`, `run.json`, and where the study says so the pictures and the
+    /// page that shows them.
+    ///
+    /// # Errors
+    ///
+    /// What the operating system says.
+    pub fn conclude(&self, report: &RunReport) -> Result<Summary, SessionError> {
+        let (folder, study) = (&self.folder, &*self.study);
+        let summary = {
+            let mut state = locked(&self.state);
+            let summary = state.summary(study);
+            folder.write(SUMMARY, pretty(&summary)?.as_bytes())?;
+            let report = pretty(report)?;
+            folder.write(RUN_REPORT, report.as_bytes())?;
+            state.kept.files.insert(RUN_REPORT.to_owned(), blake3::hash(report.as_bytes()).into());
+            folder.save(&state)?;
+            summary
+        };
+        if study.plan().outputs.pictures {
+            draw(folder, &summary, study, report)?;
+        }
+        Ok(summary)
+    }
+}
+
+/// Writes the pictures and the page that shows them.
+fn draw(folder: &Folder, summary: &Summary, study: &Study, report: &RunReport) -> Result<(), SessionError> {
+    let pictures = picture::all(summary, study.models()[0].scene());
+    for (name, _, svg) in &pictures {
+        folder.write(&format!("{name}.svg"), svg.as_bytes())?;
+        let png = picture::png(svg, WIDTH).map_err(|error| SessionError::Picture { name: name.clone(), error })?;
+        folder.write(&format!("{name}.png"), &png)?;
+    }
+    let shown: Vec<_> = pictures.into_iter().map(|(_, title, svg)| (title, svg)).collect();
+    let report = serde_json::to_value(report)?;
+    Ok(folder.write(PAGE, picture::page(summary, &shown, Some(&report)).as_bytes())?)
+}
+
+/// A study in a folder, and how far it is. Its files are named from `base`, or else from where they were as it began. Whoever
+/// writes there is not disturbed.
+///
+/// # Errors
+///
+/// A folder without a study or with a damaged one; a study whose files are not there any more, or of which nothing is saved.
+pub fn look(folder: &Path, base: Option<&Path>) -> Result<(Study, State), SessionError> {
+    let folder = Folder::at(folder);
+    let (study, _) = folder.study(base)?;
+    let state = folder.state(&study)?;
+    Ok((study, state))
+}
+
+/// Whether the folder's `summary.json` is this one, or rightly not there since the study has not ended.
+///
+/// # Errors
+///
+/// A summary that cannot be written as JSON.
+pub fn is_answer(folder: &Path, summary: &Summary) -> Result<bool, SessionError> {
+    Ok(match std::fs::read(folder.join(SUMMARY)) {
+        Ok(bytes) => bytes == pretty(summary)?.as_bytes(),
+        Err(_) => summary.stopped == Stopped::Unfinished,
+    })
+}
