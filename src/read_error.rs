@@ -71,7 +71,7 @@ pub enum ReadError {
         /// `scenes` or `traces`.
         what: &'static str,
         /// The extensions that are read, each with its dot.
-        extensions: &'static [&'static str],
+        extensions: Vec<&'static str>,
     },
     /// The file holds something that it may not hold.
     #[error("{}: {place}{}{}", escaped_path(path), if place.parts().is_empty() { "" } else { ": " }, escaped(fault))]

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use tautline::output::write_scene;
-use tautline::scene::read_scene_with;
+use tautline::output::{WrittenScene, write_scene};
+use tautline::scene::{SceneFormat, alternatives, read_scene_with};
 
 use super::failure::Failure;
 use super::input::{FileArgs, note};
@@ -12,26 +12,31 @@ use super::words::place;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The scene: .geojson, .json, .wkt, .svg, .dxf, .map, .yaml or .yml
-    #[arg(value_name = "IN")]
+    #[arg(value_name = "IN", help = scenes_read())]
     from: PathBuf,
-    /// The file to write: .geojson, .json or .wkt
-    #[arg(value_name = "OUT")]
+    #[arg(value_name = "OUT", help = scenes_written())]
     to: PathBuf,
     #[command(flatten)]
     file: FileArgs,
+}
+
+fn scenes_read() -> String {
+    let extensions: Vec<&str> = SceneFormat::all().iter().flat_map(SceneFormat::extensions).copied().collect();
+    format!("The scene: {}", alternatives(&extensions))
+}
+
+fn scenes_written() -> String {
+    let extensions: Vec<&str> = WrittenScene::all().iter().flat_map(WrittenScene::extensions).copied().collect();
+    format!("The file to write: {}", alternatives(&extensions))
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let scene = read_scene_with(&args.from, &args.file.options())?;
     note(&args.from, &scene);
     write_scene(&args.to, &scene)?;
-    let is_text = args.to.extension().is_some_and(|e| e.eq_ignore_ascii_case("wkt"));
-    if is_text && !scene.is_bare() {
-        say!(
-            "note: {}: well-known text has no place for labels, layers and what is solid; GeoJSON has",
-            args.to.display()
-        );
+    let lacks = WrittenScene::of(&args.to).map_or("", WrittenScene::lacks);
+    if !lacks.is_empty() && !scene.is_bare() {
+        say!("note: {}: {lacks}", args.to.display());
     }
     let anchor = scene.anchor().map_or("no anchor".to_owned(), |a| format!("anchor {}", place(a)));
     print(&format!(

@@ -6,7 +6,9 @@ use anyhow::anyhow;
 use glam::DVec2;
 use tautline::escape::{escaped, escaped_path};
 use tautline::example::{Walker, floor_plan};
-use tautline::scene::{AnchorError, Model, Ros, Scene, SceneOptions, Unknown, read_scene_with};
+use tautline::scene::{
+    AnchorError, Model, Ros, Scene, SceneFormat, SceneOptions, Unknown, alternatives, read_scene_with,
+};
 use tautline::stream::Source;
 use tautline::study::anchor_warnings;
 use tautline::trace::TraceReader;
@@ -22,8 +24,7 @@ const EXAMPLE_WALK: Walker = Walker { step: 0.25, steps: 500, seed: 1 };
 /// Where the walls are and the rope is tied.
 #[derive(Debug, clap::Args)]
 pub(crate) struct InputArgs {
-    /// The walls: .geojson, .json, .wkt, .svg, .dxf, a MovingAI .map or a map_server's .yaml (docs/scenes.md)
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help = scenes())]
     pub scene: Option<PathBuf>,
     /// Where the rope is tied; overrides what the scene says
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
@@ -142,7 +143,7 @@ impl InputArgs {
 
     /// How to say where the rope is tied.
     pub(crate) fn how_to_tie(&self) -> String {
-        format!("give --anchor X,Y{}", self.scene.as_deref().map_or("", how_to_mark))
+        format!("give --anchor X,Y{}", self.scene.as_deref().map_or(String::new(), how_to_mark))
     }
 
     /// The traces given, or the example's.
@@ -162,14 +163,14 @@ impl InputArgs {
     }
 }
 
+/// What is said of a file of walls.
+fn scenes() -> String {
+    let files: Vec<&str> = SceneFormat::all().iter().map(SceneFormat::files).collect();
+    format!("The walls: {} (docs/scenes.md)", alternatives(&files))
+}
+
 /// How a file of this format marks its anchor.
-fn how_to_mark(path: &Path) -> &'static str {
-    let extension = path.extension().map(|e| e.to_ascii_lowercase()).unwrap_or_default();
-    match extension.to_str() {
-        Some("geojson" | "json") => ", or put a Point with the property \"role\": \"anchor\" into the file",
-        Some("wkt") => ", or put one POINT into the file",
-        Some("svg") => ", or give an element the id \"anchor\"",
-        Some("dxf") => ", or put a POINT on a layer called anchor",
-        _ => "",
-    }
+fn how_to_mark(path: &Path) -> String {
+    let anchor = SceneFormat::of(path).map_or("", SceneFormat::anchor);
+    if anchor.is_empty() { String::new() } else { format!(", or {anchor}") }
 }

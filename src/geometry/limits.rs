@@ -47,6 +47,13 @@ pub fn check_point(point: DVec2) -> Result<DVec2, CoordinateFault> {
     Ok(DVec2::new(check(point.x)?, check(point.y)?))
 }
 
+/// The point itself, but for coordinates too small to compute with exactly, which become 0; so does a negative zero.
+#[inline]
+pub(crate) fn point(p: DVec2) -> DVec2 {
+    let fit = |c: f64| if c.abs() < COORDINATE_MIN { 0.0 } else { c };
+    DVec2::new(fit(p.x), fit(p.y))
+}
+
 /// [`check_point`] for many points at once; zeros keep their signs. A few instructions a point.
 ///
 /// # Errors

@@ -24,7 +24,7 @@ pub use events::{EventWriter, write_events};
 pub use merge::merge_results;
 pub use passing::{abandon, commit, remove_left_files};
 pub use results::{ResultWriter, write_results};
-pub use scene::write_scene;
+pub use scene::{WrittenScene, write_scene};
 pub use whole_file::WholeFile;
 pub use write_error::WriteError;
 

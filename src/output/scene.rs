@@ -12,6 +12,47 @@ use super::{WholeFile, WriteError};
 use crate::read_error::extension;
 use crate::scene::{MEMBER, Scene};
 
+/// A format in which scenes are written.
+pub struct WrittenScene {
+    extensions: &'static [&'static str],
+    lacks: &'static str,
+    write: fn(&mut WholeFile, &Scene) -> io::Result<()>,
+}
+
+/// All formats in which scenes are written.
+const FORMATS: [WrittenScene; 2] = [
+    WrittenScene { extensions: &[".geojson", ".json"], lacks: "", write: geojson },
+    WrittenScene {
+        extensions: &[".wkt"],
+        lacks: "well-known text has no place for labels, layers and what is solid; GeoJSON has",
+        write: wkt,
+    },
+];
+
+impl WrittenScene {
+    /// All formats in which scenes are written.
+    pub fn all() -> &'static [WrittenScene] {
+        &FORMATS
+    }
+
+    /// The format that a file's extension names, in whatever case.
+    pub fn of(path: &Path) -> Option<&'static WrittenScene> {
+        let extension = format!(".{}", extension(path));
+        FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
+    }
+
+    /// The extensions of its files, each with its dot and in lower case.
+    pub fn extensions(&self) -> &'static [&'static str] {
+        self.extensions
+    }
+
+    /// What it has no place for of a scene that is not [bare](Scene::is_bare), as a sentence without a full stop; empty
+    /// if it keeps all.
+    pub fn lacks(&self) -> &'static str {
+        self.lacks
+    }
+}
+
 /// Writes `scene` to `path`: `.geojson` or `.json` as GeoJSON, `.wkt` as well-known text.
 ///
 /// Reading the file gives the same walls in the same order and direction, the same vertex numbers and the same anchor,
@@ -36,13 +77,12 @@ use crate::scene::{MEMBER, Scene};
 /// ```
 pub fn write_scene(path: &Path, scene: &Scene) -> Result<(), WriteError> {
     super::check_place(path)?;
-    let write = match extension(path).as_str() {
-        "geojson" | "json" => geojson,
-        "wkt" => wkt,
-        _ => return Err(WriteError::SceneExtension { path: path.into() }),
+    let Some(format) = WrittenScene::of(path) else {
+        let extensions = FORMATS.iter().flat_map(|format| format.extensions).copied().collect();
+        return Err(WriteError::SceneExtension { path: path.into(), extensions });
     };
     let mut file = WholeFile::create(path)?;
-    write(&mut file, scene).map_err(|cause| file.error(cause))?;
+    (format.write)(&mut file, scene).map_err(|cause| file.error(cause))?;
     file.finish()
 }
 

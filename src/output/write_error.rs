@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::escape::{escaped, escaped_path};
+use crate::scene::alternatives;
 
 /// Why results, events or a scene cannot be written. Whatever stood at the path before still stands there.
 #[derive(Debug, thiserror::Error)]
@@ -18,12 +19,15 @@ pub enum WriteError {
     },
     /// The extension names no format in which scenes are written.
     #[error(
-        "{}: the extension does not name a format; scenes are written as .geojson, .json or .wkt",
-        escaped_path(path)
+        "{}: the extension does not name a format; scenes are written as {}",
+        escaped_path(path),
+        alternatives(extensions)
     )]
     SceneExtension {
         /// Which file.
         path: PathBuf,
+        /// The extensions of files that are, each with its dot.
+        extensions: Vec<&'static str>,
     },
     /// A file cannot be put there.
     #[error("cannot write {}: {}", escaped_path(path), escaped(fault))]

@@ -3,10 +3,13 @@
 
 mod moment;
 mod record;
+mod replay;
 mod stack;
 mod update;
 
-pub use moment::{Moment, moments};
-pub use record::{Event, EventKind, Status, TraceRecord, replay};
+pub use moment::Moment;
+pub use record::{Event, EventKind, Status, TraceRecord};
+pub(crate) use replay::{Lasting, spans};
+pub use replay::{moments, replay};
 pub use stack::{Contact, Rope, Side};
 pub use update::{Leg, Sweep};

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Rope, Side};
+use super::Side;
 
 /// What happened to the rope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -23,7 +23,7 @@ impl EventKind {
     }
 }
 
-/// One push or pop. A trace's events, in order, give its rope at every step ([`replay`]).
+/// One push or pop. A trace's events, in order, give its rope at every step ([`replay`](super::replay())).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Event {
     /// The step in which it happened: the move from point `step - 1` to point `step`; 0 is the move from the anchor
@@ -35,23 +35,6 @@ pub struct Event {
     pub vertex: u32,
     /// The side on which the vertex lies, as if y pointed up: [`Side::shown`] is what a picture shows.
     pub side: Side,
-}
-
-impl Event {
-    /// Pushes or pops the contact.
-    ///
-    /// # Panics
-    ///
-    /// If the event is none of this rope's: a vertex that is not there, or an unwrap of another than the pivot.
-    pub(super) fn apply(&self, rope: &mut Rope, vertices: &[DVec2]) {
-        match self.kind {
-            EventKind::Wrap => rope.push(self.vertex, vertices[self.vertex as usize], self.side),
-            EventKind::Unwrap => {
-                let popped = rope.pop().expect("an unwrap follows a wrap");
-                assert_eq!(popped.vertex, self.vertex, "the unwrap of a contact that is not the pivot");
-            }
-        }
-    }
 }
 
 /// Whether a trace kept to the rules.
@@ -98,22 +81,4 @@ pub struct TraceRecord {
     pub pull: Option<DVec2>,
     /// Every push and pop, in order.
     pub events: Vec<Event>,
-}
-
-/// Calls `each` with every point's number and the rope after the move to it, given a trace's `events`.
-///
-/// `vertices` are the scene's; `points` is the number of the trace's points. O(points + events).
-///
-/// # Panics
-///
-/// If the events are not a rope's: a vertex that is not there, or an unwrap of an empty rope.
-pub fn replay(anchor: DVec2, vertices: &[DVec2], points: usize, events: &[Event], mut each: impl FnMut(usize, &Rope)) {
-    let mut rope = Rope::new(anchor);
-    let mut events = events.iter().peekable();
-    for k in 0..points {
-        while let Some(e) = events.next_if(|e| e.step as usize <= k) {
-            e.apply(&mut rope, vertices);
-        }
-        each(k, &rope);
-    }
 }

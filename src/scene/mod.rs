@@ -5,6 +5,7 @@ mod curves;
 mod dxf;
 mod extent;
 mod flattened;
+mod format;
 mod geographic;
 mod geojson;
 mod grid;
@@ -31,6 +32,7 @@ use glam::DVec2;
 
 use crate::geometry::{CoordinateFault, check_point};
 
+pub use format::{SceneFormat, alternatives};
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};
 pub use movingai::GridMap;

@@ -5,15 +5,24 @@ use std::path::Path;
 use glam::DVec2;
 
 use super::cells::{self, SIDE_MAX, borders};
+use super::format::SceneFormat;
 use super::{Scene, excerpt};
 use crate::read_error::{Fault, Place, ReadError};
 use crate::read_file::{SCENE_MAX, read_text};
+
+/// Grid maps of MovingAI.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    extensions: &[".map"],
+    files: "a MovingAI .map",
+    anchor: "",
+    read: |path, _| parse(&read_text(path, SCENE_MAX)?).map_err(|fault| fault.in_file(path)),
+};
 
 /// Reads a map in time linear in its cells.
 ///
 /// Cell (column, row) is the unit square from (column, row) to (column + 1, row + 1), rows downwards as in the file.
 /// The walls' order is that of [`borders`].
-pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
+fn parse(text: &str) -> Result<Scene, Fault> {
     Grid::parse(text)?.scene()
 }
 

@@ -2,9 +2,32 @@
 
 use std::path::Path;
 
+use super::format::SceneFormat;
 use super::{Scene, SceneOptions, dxf, geojson, layers, movingai, ros_map, svg, wkt};
 use crate::read_error::{ReadError, extension};
-use crate::read_file::{SCENE_MAX, read_bytes, read_text};
+
+/// All formats in which scenes are read.
+const FORMATS: [SceneFormat; 6] =
+    [geojson::FORMAT, wkt::FORMAT, svg::FORMAT, dxf::FORMAT, movingai::FORMAT, ros_map::FORMAT];
+
+impl SceneFormat {
+    /// All formats in which scenes are read.
+    ///
+    /// ```
+    /// use tautline::scene::SceneFormat;
+    /// let extensions: Vec<&str> = SceneFormat::all().iter().flat_map(|format| format.extensions()).copied().collect();
+    /// assert_eq!(extensions, [".geojson", ".json", ".wkt", ".svg", ".dxf", ".map", ".yaml", ".yml"]);
+    /// ```
+    pub fn all() -> &'static [SceneFormat] {
+        &FORMATS
+    }
+
+    /// The format that a file's extension names, in whatever case.
+    pub fn of(path: &Path) -> Option<&'static SceneFormat> {
+        let extension = format!(".{}", extension(path));
+        FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
+    }
+}
 
 /// Reads the scene in `path` with the usual [`SceneOptions`].
 ///
@@ -15,16 +38,7 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
     read_scene_with(path, &SceneOptions::default())
 }
 
-/// Reads the scene in `path`, in the format that its extension names:
-///
-/// | extension | format |
-/// |---|---|
-/// | `.geojson`, `.json` | GeoJSON |
-/// | `.wkt` | well-known text |
-/// | `.svg` | drawings |
-/// | `.dxf` | drawings in ASCII DXF |
-/// | `.map` | MovingAI grid maps |
-/// | `.yaml`, `.yml` | maps of ROS's `map_server`, with the image that they name |
+/// Reads the scene in `path`, in the format that its extension names, one of [`SceneFormat::all`].
 ///
 /// The extension's case does not matter. Coordinates are taken as planar, in the file's own unit. A scene may be
 /// without walls and without an anchor. Time and memory are linear in the file, but for what a drawing uses many times:
@@ -46,19 +60,11 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_scene_with(path: &Path, options: &SceneOptions) -> Result<Scene, ReadError> {
-    let parsed = match extension(path).as_str() {
-        "geojson" | "json" => geojson::parse(&read_text(path, SCENE_MAX)?, &layers::keys(options)),
-        "wkt" => wkt::parse(&read_text(path, SCENE_MAX)?),
-        "svg" => svg::parse(&read_text(path, SCENE_MAX)?, options.flatten),
-        "dxf" => dxf::parse(&read_bytes(path, SCENE_MAX)?, options.flatten),
-        "map" => movingai::parse(&read_text(path, SCENE_MAX)?),
-        "yaml" | "yml" => Ok(ros_map::read(path, options.ros, options.unknown)?),
-        _ => {
-            let extensions = &[".geojson", ".json", ".wkt", ".svg", ".dxf", ".map", ".yaml", ".yml"];
-            return Err(ReadError::Extension { path: path.into(), what: "scenes", extensions });
-        }
+    let Some(format) = SceneFormat::of(path) else {
+        let extensions = FORMATS.iter().flat_map(|format| format.extensions).copied().collect();
+        return Err(ReadError::Extension { path: path.into(), what: "scenes", extensions });
     };
-    parsed.and_then(|scene| layers::choose(scene, options)).map_err(|fault| fault.in_file(path))
+    layers::choose((format.read)(path, options)?, options).map_err(|fault| fault.in_file(path))
 }
 
 #[cfg(test)]
@@ -90,6 +96,14 @@ mod tests {
             let rest = "the extension does not name a format; scenes are read from .geojson, .json, .wkt, .svg, .dxf, \
                 .map, .yaml, .yml";
             assert_eq!(e, format!("{name}: {rest}"));
+        }
+    }
+
+    #[test]
+    fn the_page_of_scenes_names_every_extension() {
+        let page = include_str!("../../docs/scenes.md");
+        for extension in SceneFormat::all().iter().flat_map(SceneFormat::extensions) {
+            assert!(page.contains(&format!("`{extension}`")), "docs/scenes.md says nothing of {extension}");
         }
     }
 }

@@ -1,9 +1,24 @@
 //! Standard errors and intervals.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::moments::Moments;
 use super::order;
 use super::student::{normal, student};
-use super::summary::Estimate;
-use super::tally::Moments;
+
+/// A number with its uncertainty: the true value lies between `low` and `high` as often as the study's confidence says.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Estimate {
+    /// The best guess.
+    pub value: f64,
+    /// Its standard error; `None` where too little was seen to say.
+    pub error: Option<f64>,
+    /// The lower end of the interval; `None` where too little was seen to say.
+    pub low: Option<f64>,
+    /// The upper end.
+    pub high: Option<f64>,
+}
 
 /// How often intervals hold the truth.
 #[derive(Debug, Clone, Copy)]

@@ -1,13 +1,12 @@
 //! Reading and checking a study's file.
 
-use std::f64::consts::PI;
 use std::path::Path;
 
-use glam::DVec2;
-
 use super::file_places::{explain, located, vanishing};
-use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
-use crate::geometry::{check_point, number};
+use super::plan::{AnchorPlan, Plan};
+use super::plan_error::PlanError;
+use super::tally::Tallies;
+use crate::geometry::number;
 use crate::read_file::{SETTINGS_MAX, read_text};
 
 /// The study that is run when no file is given, and the template of new ones.
@@ -18,40 +17,6 @@ const MOST_BLOCKS: u64 = 1 << 20;
 
 /// How many points the traces of a block may have: some 4 GB, with all that belongs to them.
 const MOST_POINTS: u64 = 1 << 27;
-
-/// The most steps of a trace: its points are numbered in 31 bits.
-const MOST_STEPS: u32 = (1 << 31) - 2;
-
-impl WalkPlan {
-    /// Whether its numbers can be walked with.
-    pub(super) fn check(&self) -> Result<(), PlanError> {
-        let (step, steps) = match *self {
-            WalkPlan::Uniform { step, steps, .. }
-            | WalkPlan::Gaussian { step, steps, .. }
-            | WalkPlan::Persistent { step, steps, .. }
-            | WalkPlan::Waypoints { step, steps, .. } => (step, steps),
-            WalkPlan::Given { .. } => return Ok(()),
-        };
-        if !(step > 0.0 && check_point(DVec2::new(step, 0.0)).is_ok()) {
-            return Err(PlanError::new(format!(
-                "walk.step: {} is no length of a step; give a number above 0, in the scene's unit",
-                number(step)
-            )));
-        }
-        if !(1..=MOST_STEPS).contains(&steps) {
-            return Err(PlanError::new(format!(
-                "walk.steps: a trace cannot have {steps} steps; give a whole number from 1 to {MOST_STEPS}"
-            )));
-        }
-        match *self {
-            WalkPlan::Persistent { turn, .. } if !(0.0..=PI).contains(&turn) => Err(PlanError::new(format!(
-                "walk.turn: a heading cannot turn by {}; give radians, from 0 to pi ({PI})",
-                number(turn)
-            ))),
-            _ => Ok(()),
-        }
-    }
-}
 
 impl Plan {
     /// Reads a study's file (TOML) and checks everything that can be checked without its scene.
@@ -168,19 +133,7 @@ impl Plan {
                 ));
             }
         }
-        let tallies = &self.tallies;
-        if !(tallies.confidence > 0.0 && tallies.confidence < 1.0) {
-            return err(format!("tallies.confidence: {} is not between 0 and 1", number(tallies.confidence)));
-        }
-        if let Some(bad) = tallies.limits.iter().find(|l| !(l.is_finite() && **l >= 0.0)) {
-            return err(format!("tallies.limits: {} is no length", number(*bad)));
-        }
-        if !(tallies.bin.is_finite() && tallies.bin >= 0.0) {
-            return err(format!("tallies.bin: {} is no width", number(tallies.bin)));
-        }
-        if tallies.map > 4096 {
-            return err(format!("tallies.map: at most 4096 cells side by side, not {}", tallies.map));
-        }
+        Tallies::check(&self.tallies)?;
         for (name, value) in [("relative_error", self.until.relative_error), ("seconds", self.until.seconds)] {
             if value.is_some_and(|v| !(v.is_finite() && v > 0.0)) {
                 return err(format!("until.{name}: must be above 0"));
@@ -196,7 +149,18 @@ impl Plan {
 
     /// Whether its traces come from a file.
     pub fn is_given(&self) -> bool {
-        matches!(self.walk, WalkPlan::Given { .. })
+        self.walk.given().is_some()
+    }
+}
+
+impl PlanError {
+    /// The same of the study's file at `path`: with its name and, where a key of it is at fault, the line. What is wrong with other
+    /// files stays as it is.
+    #[must_use]
+    pub fn in_file(self, path: &Path) -> Self {
+        let text = read_text(path, SETTINGS_MAX).unwrap_or_default();
+        let what = located(&text, self.what.clone());
+        if self.path.is_some() || what == self.what { self } else { PlanError { path: Some(path.into()), what } }
     }
 }
 

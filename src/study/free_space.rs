@@ -3,8 +3,7 @@
 use glam::DVec2;
 
 use super::random::Random;
-use super::walk::point;
-use crate::geometry::orient;
+use crate::geometry::{orient, point};
 use crate::scene::Model;
 use crate::visibility::Visibility;
 

@@ -4,31 +4,31 @@ mod estimate;
 mod file;
 mod file_places;
 mod free_space;
+mod moments;
 mod opened;
 mod order;
 mod plan;
+mod plan_error;
 mod random;
 mod run;
 mod state;
 mod student;
-mod summarize;
 mod summary;
 mod surroundings;
 mod tally;
 mod walk;
 
+pub use estimate::Estimate;
 pub use file::EXAMPLE;
+pub(crate) use moments::Moments;
 pub use opened::Study;
-pub use plan::{
-    AnchorPlan, AtWalls, OutputPlan, Plan, PlanError, RunPlan, Sampled, ScenePlan, Start, TallyPlan, UntilPlan,
-    WalkPlan,
-};
+pub use plan::{AnchorPlan, OutputPlan, Plan, RunPlan, Sampled, ScenePlan, UntilPlan};
+pub use plan_error::PlanError;
 pub use run::{RunError, Spent, run, run_again};
-pub use state::{Check, Kept, Part, Shard, State, StateError, merge};
-pub use summary::{
-    Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Quantile, Scalar, Stopped, Summary, Survival,
-    SurvivalPoint, quantity,
-};
+pub use state::{Check, Kept, Part, Shard, State, StateError, Stopped, merge};
+pub use summary::Summary;
 pub use surroundings::anchor_warnings;
-pub(crate) use tally::Moments;
-pub use walk::Walks;
+// All answers of tallies, and the plan of their options.
+pub use tally::*;
+// The plans of all kinds of walks.
+pub use walk::*;

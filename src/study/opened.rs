@@ -8,10 +8,11 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::free_space::FreeSpace;
-use super::plan::{AnchorPlan, Plan, PlanError, WalkPlan};
+use super::plan::{AnchorPlan, Plan};
+use super::plan_error::PlanError;
 use super::random::{Purpose, Random};
 use super::state::Shard;
-use super::tally::Setting;
+use super::tally::{Setting, Tallies};
 use super::walk::Walks;
 use crate::example::BuiltIn;
 use crate::geometry::{Shown, number};
@@ -22,7 +23,7 @@ use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
 /// A study that can be run.
 pub struct Study {
     plan: Plan,
-    pub(super) setting: Setting,
+    pub(super) tallies: Tallies,
     /// The scene as it is with each of its anchors.
     given_models: Vec<Arc<Model>>,
     /// For each anchor; none if the traces are given.
@@ -51,11 +52,12 @@ impl Study {
             (None, None) => return Err(PlanError::new("scene: give `file` or `built_in`")),
         };
         let models = models(&plan, &scene)?;
-        let (walks, given) = match &plan.walk {
-            WalkPlan::Given { file } => (Vec::new(), Some(folder.join(file))),
-            walk => {
-                let of = |model: &Arc<Model>| Walks::new(model.clone(), walk, plan.run.seed);
-                (models.iter().map(of).collect::<Result<_, _>>()?, None)
+        let given = plan.walk.given().map(|file| folder.join(file));
+        let walks = match given {
+            Some(_) => Vec::new(),
+            None => {
+                let of = |model: &Arc<Model>| Walks::new(model.clone(), &plan.walk, plan.run.seed);
+                models.iter().map(of).collect::<Result<_, _>>()?
             }
         };
         let identity = identity(&plan, &models, given.as_deref())?;
@@ -63,15 +65,9 @@ impl Study {
         let bounds = bounds.expect("a study has an anchor");
         let simplified =
             plan.run.trade().simplified(&models).map_err(|e| PlanError::new(format!("run.simplify: {e}")))?;
-        let setting = Setting::new(&plan, simplified, bounds);
-        let least = setting.unit;
-        if setting.bin < least {
-            return Err(PlanError::new(format!(
-                "tallies.bin: {} is too narrow for lengths in this scene; give at least {least:e}, or 0 for a usual width",
-                number(setting.bin)
-            )));
-        }
-        Ok(Study { plan, setting, given_models: models, walks, given, identity })
+        let setting = Setting::new(&plan.tallies, simplified, bounds, plan.walk.steps());
+        let tallies = Tallies::new(&plan.tallies, setting)?;
+        Ok(Study { plan, tallies, given_models: models, walks, given, identity })
     }
 
     /// The plan.
@@ -82,7 +78,7 @@ impl Study {
     /// The scene with each of its anchors, as ropes see it: simplified if the plan says so. Trace i has anchor i modulo their
     /// number.
     pub fn models(&self) -> &[Arc<Model>] {
-        &self.setting.models
+        &self.tallies.setting.models
     }
 
     /// A hash of all that the answer depends on: the plan (but for what is written besides the summary), the scene, and the
@@ -152,17 +148,17 @@ impl Study {
 
     /// The scene with the anchor of trace `number`.
     pub fn model(&self, number: u64) -> &Arc<Model> {
-        self.setting.model(number)
+        self.tallies.setting.model(number)
     }
 
     /// A trace that is drawn, as it is drawn.
     fn drawn(&self, number: u64) -> SettledTrace {
-        self.walks[self.setting.anchor(number)].trace(number)
+        self.walks[self.tallies.setting.anchor(number)].trace(number)
     }
 
     /// A trace of the file, as it stands there.
     fn settled(&self, trace: Trace) -> SettledTrace {
-        let model = &self.given_models[self.setting.anchor(trace.id)];
+        let model = &self.given_models[self.tallies.setting.anchor(trace.id)];
         let settled = settle_owned(model, trace);
         let still = settled.still();
         settled.with_walked(Walked { still, met: 0 })
@@ -284,8 +280,8 @@ fn skip(reader: &mut TraceReader, count: u64) -> Result<u64, PlanError> {
 /// The plan with the number of its traces: where it does not say how many of a file it takes, all that there are. Reads the
 /// file to its end for that.
 fn counted(mut plan: Plan, folder: &Path) -> Result<Plan, PlanError> {
-    let count = match (&plan.walk, plan.run.traces) {
-        (WalkPlan::Given { file }, None) => {
+    let count = match (plan.walk.given(), plan.run.traces) {
+        (Some(file), None) => {
             let path = folder.join(file);
             // It is read again for its traces, so it can be no pipe.
             open(&path, false).map_err(|e| PlanError::new(e.to_string()))?;
@@ -328,12 +324,12 @@ fn models(plan: &Plan, scene: &Scene) -> Result<Vec<Arc<Model>>, PlanError> {
 }
 
 /// Part of every study's identity. The number is to be raised whenever traces are drawn, counted or estimated in another way, so
-/// that no study goes on with what came out before.
-const ANSWERS: &[u8] = b"tautline study 3\n";
+/// that no study goes on with what came out before; a test of this module notices.
+pub(super) const ANSWERS: u32 = 3;
 
 fn identity(plan: &Plan, models: &[Arc<Model>], given: Option<&Path>) -> Result<String, PlanError> {
     let mut hasher = blake3::Hasher::new();
-    hasher.update(ANSWERS);
+    hasher.update(format!("tautline study {ANSWERS}\n").as_bytes());
     let plan = Plan { outputs: Default::default(), ..plan.clone() };
     hasher.update(&serde_json::to_vec(&plan).expect("a plan can be written"));
     let mut point = |p: DVec2| {

@@ -1,13 +1,13 @@
 //! What a study is: the file that describes it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::file_places::located;
+use super::tally::TallyPlan;
+use super::walk::WalkPlan;
 use crate::engine::Precision;
-use crate::read_file::{SETTINGS_MAX, read_text};
 use crate::scene::{Ros, SceneOptions, Unknown};
 use crate::trade::Trade;
 
@@ -110,97 +110,6 @@ pub struct Sampled {
     pub sample: u32,
 }
 
-/// How the free end is dragged. No step ever touches a wall.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum WalkPlan {
-    /// A random walk whose steps all have the same length and any direction.
-    Uniform {
-        /// The length of a step.
-        step: f64,
-        /// How many steps a trace has.
-        steps: u32,
-        /// Where traces start.
-        #[serde(default)]
-        start: Start,
-        /// What becomes of a step that meets a wall.
-        #[serde(default)]
-        at_walls: AtWalls,
-    },
-    /// A random walk whose steps are normally distributed in x and y.
-    Gaussian {
-        /// The standard deviation of a step in x and in y.
-        step: f64,
-        /// How many steps a trace has.
-        steps: u32,
-        /// Where traces start.
-        #[serde(default)]
-        start: Start,
-        /// What becomes of a step that meets a wall.
-        #[serde(default)]
-        at_walls: AtWalls,
-    },
-    /// A walk that keeps its heading but for noise: the heading turns by a uniform angle in each step.
-    Persistent {
-        /// The length of a step.
-        step: f64,
-        /// How many steps a trace has.
-        steps: u32,
-        /// By how much the heading turns at most in one step, in radians.
-        #[serde(default = "default_turn")]
-        turn: f64,
-        /// Where traces start.
-        #[serde(default)]
-        start: Start,
-        /// What becomes of a step that meets a wall.
-        #[serde(default)]
-        at_walls: AtWalls,
-    },
-    /// Drives along shortest collision-free paths from one random goal to the next.
-    Waypoints {
-        /// The length of a step along the path.
-        step: f64,
-        /// How many steps a trace has.
-        steps: u32,
-        /// Where traces start.
-        #[serde(default)]
-        start: Start,
-    },
-    /// The traces of a file, in the order of their numbers.
-    Given {
-        /// A .csv or .parquet of points, relative to the study's own folder.
-        file: PathBuf,
-    },
-}
-
-fn default_turn() -> f64 {
-    0.4
-}
-
-/// Where a trace starts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Start {
-    /// At the anchor.
-    #[default]
-    Anchor,
-    /// At a point drawn uniformly over what is visible from the anchor within the scene's bounding box.
-    Visible,
-}
-
-/// What becomes of a step that meets a wall or leaves the scene's bounding box.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum AtWalls {
-    /// It is drawn again.
-    #[default]
-    Redraw,
-    /// The free end stays where it is for that step.
-    Reject,
-    /// It is thrown back by the wall as light by a mirror.
-    Reflect,
-}
-
 /// How much is done.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -250,30 +159,6 @@ impl Default for RunPlan {
     }
 }
 
-/// What is counted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct TallyPlan {
-    /// How often intervals are to hold the truth, between 0 and 1.
-    pub confidence: f64,
-    /// Rope lengths: for each, when the rope first becomes longer (the survival curve).
-    pub limits: Vec<f64>,
-    /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's size.
-    pub bin: f64,
-    /// How many cells the longer side of the map of the plane has; they are squares. 0 for no map.
-    pub map: u32,
-    /// After how many steps the map looks at the free end again: neighbouring steps say nearly the same.
-    pub map_every: u32,
-    /// How many of the most common taut ropes are reported.
-    pub ropes: u32,
-}
-
-impl Default for TallyPlan {
-    fn default() -> Self {
-        TallyPlan { confidence: 0.95, limits: Vec::new(), bin: 0.0, map: 64, map_every: 8, ropes: 10 }
-    }
-}
-
 /// When to stop before all traces are done. Looked at after each block, in the order of the blocks; the time, after as many as
 /// are computed at once.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -300,69 +185,5 @@ pub struct OutputPlan {
 impl Default for OutputPlan {
     fn default() -> Self {
         OutputPlan { traces: false, pictures: true }
-    }
-}
-
-impl WalkPlan {
-    /// The length of a step, or the standard deviation of one in x and in y; `None` for given traces.
-    pub fn step(&self) -> Option<f64> {
-        match *self {
-            WalkPlan::Uniform { step, .. }
-            | WalkPlan::Gaussian { step, .. }
-            | WalkPlan::Persistent { step, .. }
-            | WalkPlan::Waypoints { step, .. } => Some(step),
-            WalkPlan::Given { .. } => None,
-        }
-    }
-
-    /// What becomes of a step that meets a wall; `None` for traces none of whose steps is drawn so.
-    pub fn at_walls(&self) -> Option<AtWalls> {
-        match *self {
-            WalkPlan::Uniform { at_walls, .. }
-            | WalkPlan::Gaussian { at_walls, .. }
-            | WalkPlan::Persistent { at_walls, .. } => Some(at_walls),
-            WalkPlan::Waypoints { .. } | WalkPlan::Given { .. } => None,
-        }
-    }
-
-    /// How many steps each trace has; `None` for given traces.
-    pub fn steps(&self) -> Option<u32> {
-        match *self {
-            WalkPlan::Uniform { steps, .. }
-            | WalkPlan::Gaussian { steps, .. }
-            | WalkPlan::Persistent { steps, .. }
-            | WalkPlan::Waypoints { steps, .. } => Some(steps),
-            WalkPlan::Given { .. } => None,
-        }
-    }
-}
-
-/// What is wrong with a study's file.
-#[derive(Debug, thiserror::Error)]
-#[error("{}{what}", .path.as_ref().map_or(String::new(), |p| format!("{}: ", p.display())))]
-pub struct PlanError {
-    /// The file, if it is one.
-    pub path: Option<PathBuf>,
-    /// What is wrong, where, and what would be right.
-    pub what: String,
-}
-
-impl PlanError {
-    pub(super) fn new(what: impl Into<String>) -> Self {
-        PlanError { path: None, what: what.into() }
-    }
-
-    /// The same of the study's file at `path`: with its name and, where a key of it is at fault, the line. What is wrong with other
-    /// files stays as it is.
-    #[must_use]
-    pub fn in_file(self, path: &Path) -> Self {
-        let text = read_text(path, SETTINGS_MAX).unwrap_or_default();
-        let what = located(&text, self.what.clone());
-        if self.path.is_some() || what == self.what { self } else { PlanError { path: Some(path.into()), what } }
-    }
-
-    pub(super) fn at(mut self, path: &Path) -> Self {
-        self.path = Some(path.to_owned());
-        self
     }
 }

@@ -9,12 +9,11 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use super::estimate::Confidence;
+use super::moments::Moments;
 use super::opened::{Source, Study};
-use super::plan::PlanError;
-use super::state::{Shard, State};
-use super::summary::Stopped;
-use super::tally::{Block, Counts, Moments, SCALARS, Traced};
+use super::plan_error::PlanError;
+use super::state::{Shard, State, Stopped};
+use super::tally::{Block, Counts, Merge, Traced};
 use crate::engine::{Engine, EngineError, Job};
 use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
@@ -60,9 +59,9 @@ struct Group {
 /// What a group's traces of one block have come to.
 enum Tallied {
     /// The block is whole.
-    Whole([Moments; SCALARS.len()], Counts),
+    Whole(Box<Counts>),
     /// There is more to come of it.
-    Open(Block),
+    Open(Box<Block>),
 }
 
 /// Goes on with `state` until the study, or the shard, is done or the job is stopped.
@@ -101,12 +100,12 @@ fn in_groups<E: Send>(
     mut after: impl FnMut(&mut State, Vec<TraceRecord>, usize) -> Result<(), E>,
 ) -> Result<Spent, RunError<E>> {
     let mut spent = Spent::default();
-    let (shard, first, mut open, mut total) = {
+    let (shard, first, mut open, mut longest) = {
         let state = state.lock().expect("nobody panicked with the state");
         if state.stopped != Stopped::Unfinished {
             return Ok(spent);
         }
-        (state.shard, state.place(study), state.open.clone(), state.tallies.scalars())
+        (state.shard, state.place(study), state.open.clone(), state.counts.scalars.max_length())
     };
     let all = shard.count(study.plan().blocks());
     let places = first..study.places(shard);
@@ -119,14 +118,14 @@ fn in_groups<E: Send>(
             added += count;
             match tallied {
                 Tallied::Open(block) => {
-                    open = Some(block.clone());
-                    state.open = Some(block);
+                    open = Some(Block::clone(&block));
+                    state.open = Some(*block);
                 }
-                Tallied::Whole(moments, counts) => {
-                    total.iter_mut().zip(&moments).for_each(|(total, block)| total.merge(block));
-                    state.tallies.add(shard.block(index), moments, counts);
+                Tallied::Whole(counts) => {
+                    longest.merge(&counts.scalars.max_length());
+                    state.counts.merge_with(*counts);
                     (state.done, state.open) = (index + 1, None);
-                    state.stopped = stopped(study, &total[1], state.done == all);
+                    state.stopped = stopped(study, &longest, state.done == all);
                     if state.stopped != Stopped::Unfinished {
                         break;
                     }
@@ -227,24 +226,23 @@ fn tally(
     records: &[TraceRecord],
     open: Option<Block>,
 ) -> Vec<(u64, usize, Tallied)> {
-    let mut traced = group.traces.iter().zip(records).map(|(trace, record)| Traced { trace, record });
-    let mut first = open.or_else(|| Some(Block::new(&study.setting)));
+    let mut traced =
+        group.traces.iter().zip(records).map(|(trace, record)| Traced::new(&study.tallies.setting, trace, record));
+    let mut first = open;
     let parts: Vec<_> = study
         .numbers(shard, group.places.clone())
         .map(|(index, numbers)| {
             let count = (numbers.end - numbers.start) as usize;
             let is_whole = numbers.end == study.block(shard.block(index)).end;
-            let block = first.take().unwrap_or_else(|| Block::new(&study.setting));
+            let block = first.take().unwrap_or_default();
             (index, is_whole, block, traced.by_ref().take(count).collect::<Vec<_>>())
         })
         .collect();
     let count = |(index, is_whole, mut block, part): (u64, bool, Block, Vec<Traced<'_>>)| {
-        block.add(&study.setting, &part);
-        let tallied = if is_whole {
-            let (moments, counts) = block.finish();
-            Tallied::Whole(moments, counts)
-        } else {
-            Tallied::Open(block)
+        block.add(&study.tallies, &part);
+        let tallied = match is_whole {
+            true => Tallied::Whole(Box::new(block.finish(&study.tallies, shard.block(index)))),
+            false => Tallied::Open(Box::new(block)),
         };
         (index, part.len(), tallied)
     };
@@ -314,7 +312,7 @@ fn evaluate(
     }
     let mut parts: Vec<Vec<(usize, SettledTrace)>> = engines.iter().map(|_| Vec::new()).collect();
     for (i, trace) in traces.drain(..).enumerate() {
-        parts[study.setting.anchor(trace.id())].push((i, trace));
+        parts[study.tallies.setting.anchor(trace.id())].push((i, trace));
     }
     let mut all = Vec::new();
     for (engine, part) in engines.iter_mut().zip(parts) {
@@ -337,7 +335,7 @@ fn stopped(study: &Study, longest: &Moments, is_last: bool) -> Stopped {
     if let Some(most) = plan.until.relative_error
         && longest.count >= LEAST.max(study.models().len() as u64)
     {
-        let mean = Confidence::new(plan.tallies.confidence).mean(longest);
+        let mean = study.tallies.setting.confidence.mean(longest);
         if mean.high.is_some_and(|high| high - mean.value <= most * mean.value.abs()) {
             return Stopped::RelativeError;
         }

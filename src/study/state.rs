@@ -8,19 +8,42 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::opened::Study;
-use super::summary::Stopped;
-use super::tally::{Block, Tallies};
+use super::tally::{Block, Counts, Merge};
 use crate::output::{WholeFile, WriteError};
 
-/// What a state file begins with. The number changes when the format does.
-const MAGIC: &[u8] = b"tautline study state 3\n";
+/// What a state file begins with, before the hash of its layout.
+const MAGIC: &str = "tautline study state ";
 
-/// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by `of`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+/// The first line of a state file. It tells what the fields of a state are and of which types, so that none is read
+/// that has others: not their numbers, which [`ANSWERS`](super::opened::ANSWERS) stands for.
+fn first_line() -> Vec<u8> {
+    let hash = blake3::hash(layout::<State>().to_string().as_bytes()).to_hex();
+    format!("{MAGIC}{}\n", &hash[..8]).into_bytes()
+}
+
+/// The names of all fields, in their order, and their types.
+fn layout<T: JsonSchema>() -> serde_json::Value {
+    fn without_words(schema: &mut serde_json::Value) {
+        if let Some(fields) = schema.as_object_mut() {
+            fields.retain(|name, value| name != "description" || !value.is_string());
+        }
+        schema.as_object_mut().into_iter().flat_map(|fields| fields.values_mut()).for_each(without_words);
+        schema.as_array_mut().into_iter().flatten().for_each(without_words);
+    }
+    let mut schema = schemars::schema_for!(T).to_value();
+    without_words(&mut schema);
+    schema
+}
+
+/// Which part of a study's blocks is done where it is shared out: those whose number leaves `number` when divided by
+/// `of`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "(u32, u32)")]
+#[schemars(with = "(u32, u32)")]
 pub struct Shard {
     number: u32,
     of: u32,
@@ -77,8 +100,22 @@ impl fmt::Display for Shard {
     }
 }
 
+/// Why a study ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Stopped {
+    /// All traces are done; of a shard, all its own.
+    Complete,
+    /// The mean is as certain as was asked for.
+    RelativeError,
+    /// The time was over.
+    Seconds,
+    /// It has not ended.
+    Unfinished,
+}
+
 /// How far a study, or a shard of one, is.
-#[derive(Clone, Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize, JsonSchema)]
 pub struct State {
     pub(super) identity: String,
     pub(super) shard: Shard,
@@ -89,7 +126,7 @@ pub struct State {
     pub(super) stopped: Stopped,
     /// How long that took, in seconds.
     pub(super) seconds: f64,
-    pub(super) tallies: Tallies,
+    pub(super) counts: Counts,
     /// What is kept beside the state, so that it is known again.
     pub kept: Kept,
 }
@@ -98,7 +135,7 @@ pub struct State {
 pub type Check = [u8; blake3::OUT_LEN];
 
 /// What is kept beside a state, with check sums by which it is known again.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Kept {
     /// Files of rows, in the order of their traces.
     pub parts: Vec<Part>,
@@ -107,7 +144,7 @@ pub struct Kept {
 }
 
 /// A file of rows.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Part {
     /// Of which traces it has rows: their [places](Study::places) in the shard.
     pub places: Range<u64>,
@@ -148,7 +185,7 @@ impl State {
             kept: Kept::default(),
             stopped: if nothing_to_do { Stopped::Complete } else { Stopped::Unfinished },
             seconds: 0.0,
-            tallies: Tallies::default(),
+            counts: Counts::default(),
         }
     }
 
@@ -170,7 +207,7 @@ impl State {
 
     /// How many traces the blocks have that are done.
     pub fn traces(&self) -> u64 {
-        self.tallies.counts.traces.sum
+        self.counts.totals.traces.sum
     }
 
     /// Whether there is nothing left to do, and why.
@@ -193,7 +230,7 @@ impl State {
         let mut file = WholeFile::create(path)?;
         let mut write =
             |bytes: &[u8]| file.write_all(bytes).map_err(|cause| WriteError::Io { path: path.into(), cause });
-        write(MAGIC)?;
+        write(&first_line())?;
         write(blake3::hash(&bytes).as_bytes())?;
         write(&bytes)?;
         file.finish_durably()
@@ -207,8 +244,8 @@ impl State {
     pub fn load(path: &Path, study: &Study) -> Result<Self, StateError> {
         let fault = |what: &str| StateError { path: path.to_owned(), what: what.to_owned() };
         let bytes = fs::read(path).map_err(|e| fault(&e.to_string()))?;
-        let Some(rest) = bytes.strip_prefix(MAGIC) else {
-            let kin = bytes.starts_with(&MAGIC[..MAGIC.len() - 2]);
+        let Some(rest) = bytes.strip_prefix(first_line().as_slice()) else {
+            let kin = bytes.starts_with(MAGIC.as_bytes());
             return Err(fault(if kin {
                 "the state of another version of tautline"
             } else {
@@ -279,7 +316,7 @@ pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, 
     }
     for (_, state) in shards {
         whole.seconds += state.seconds;
-        whole.tallies.merge(state.tallies);
+        whole.counts.merge_with(state.counts);
     }
     whole.done = blocks;
     whole.stopped = Stopped::Complete;
@@ -289,6 +326,53 @@ pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_layout_is_what_fields_there_are_in_which_order() {
+        /// A state.
+        #[derive(JsonSchema)]
+        #[schemars(rename = "S")]
+        #[allow(dead_code)]
+        struct Old {
+            /// Before.
+            first: u64,
+            second: u64,
+            counts: Vec<Inner<u64>>,
+        }
+        #[derive(JsonSchema)]
+        #[schemars(rename = "S")]
+        #[allow(dead_code)]
+        struct Reworded {
+            first: u64,
+            second: u64,
+            counts: Vec<Inner<u64>>,
+        }
+        #[derive(JsonSchema)]
+        #[schemars(rename = "S")]
+        #[allow(dead_code)]
+        struct Turned {
+            second: u64,
+            first: u64,
+            counts: Vec<Inner<u64>>,
+        }
+        #[derive(JsonSchema)]
+        #[schemars(rename = "S")]
+        #[allow(dead_code)]
+        struct Retyped {
+            first: u64,
+            second: u64,
+            counts: Vec<Inner<f64>>,
+        }
+        #[derive(JsonSchema)]
+        #[schemars(rename = "I")]
+        #[allow(dead_code)]
+        struct Inner<T> {
+            count: T,
+        }
+        let old = layout::<Old>();
+        assert_eq!(old, layout::<Reworded>());
+        assert!(old != layout::<Turned>() && old != layout::<Retyped>());
+    }
 
     #[test]
     fn a_shard_that_cannot_be_is_not_read() {

@@ -62,7 +62,7 @@ impl TraceReader {
             format = "csv".into();
         }
         if !["csv", "parquet"].contains(&format.as_str()) {
-            let extensions = &[".csv", ".parquet"];
+            let extensions = vec![".csv", ".parquet"];
             return Err(ReadError::Extension { path: path.into(), what: "traces", extensions });
         }
         let file = open(path, format == "csv")?;

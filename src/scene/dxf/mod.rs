@@ -15,13 +15,23 @@ use std::rc::Rc;
 
 use glam::{DAffine2, DVec2};
 
+use super::format::SceneFormat;
 use super::outlines::Outlines;
 use super::{Inside, Object, Scene, excerpt, listed, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
+use crate::read_file::{SCENE_MAX, read_bytes};
 use block::{Block, Clips};
 use entity::{Entities, Entity};
 use shapes::{point, upside, width};
+
+/// Drawings in ASCII DXF.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    extensions: &[".dxf"],
+    files: ".dxf",
+    anchor: "put a POINT on a layer called anchor",
+    read: |path, options| parse(&read_bytes(path, SCENE_MAX)?, options.flatten).map_err(|fault| fault.in_file(path)),
+};
 
 /// How many entities and lines there may be beyond those that the file itself has room for: by INSERT.
 const USED_MAX: usize = 1 << 22;
@@ -33,7 +43,7 @@ const ANCHOR: &str = "anchor";
 ///
 /// What lies on a layer that is off or frozen, what is invisible and what lies in the paper space is no wall; nor is
 /// what is inserted on a frozen layer, whatever layer it is on itself. Entities of other kinds are counted.
-pub(super) fn parse(bytes: &[u8], flatten: Option<f64>) -> Result<Scene, Fault> {
+fn parse(bytes: &[u8], flatten: Option<f64>) -> Result<Scene, Fault> {
     if bytes.starts_with(b"AutoCAD Binary DXF") {
         return Err(Fault::new(Place::default(), "binary DXF is not read; save the drawing as ASCII DXF"));
     }

@@ -10,11 +10,23 @@ use std::collections::{BTreeSet, HashMap};
 use geojson::{Feature, GeoJson, Geometry, GeometryValue, JsonValue, Position};
 use glam::DVec2;
 
+use super::format::SceneFormat;
 use super::lines::Lines;
-use super::{Inside, Object, Scene, geographic};
+use super::{Inside, Object, Scene, geographic, layers};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
+use crate::read_file::{SCENE_MAX, read_text};
 use properties::Kept;
+
+/// GeoJSON.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    extensions: &[".geojson", ".json"],
+    files: ".geojson, .json",
+    anchor: "put a Point with the property \"role\": \"anchor\" into the file",
+    read: |path, options| {
+        parse(&read_text(path, SCENE_MAX)?, &layers::keys(options)).map_err(|fault| fault.in_file(path))
+    },
+};
 
 /// Reads a FeatureCollection, a Feature or a bare geometry.
 ///
@@ -22,7 +34,7 @@ use properties::Kept;
 /// positions; points that are no anchor are passed over. The member `"y": "down"` of a FeatureCollection says so.
 /// Further numbers of a position (its altitude) are passed over too. Walls can be chosen by what the properties called
 /// `keys` say.
-pub(super) fn parse(text: &str, keys: &BTreeSet<&str>) -> Result<Scene, Fault> {
+fn parse(text: &str, keys: &BTreeSet<&str>) -> Result<Scene, Fault> {
     let document = document::parse(text)?;
     let mut found = Found { keys: keys.clone(), ..Found::default() };
     let degrees = is_in_degrees(&document);

@@ -9,6 +9,7 @@ use std::path::Path;
 use glam::DVec2;
 
 use super::cells::{self, borders};
+use super::format::SceneFormat;
 use super::image;
 use super::{Ros, Scene, Unknown};
 use crate::read_error::{Fault, Place, ReadError};
@@ -19,9 +20,17 @@ use map::parse;
 /// How many walls a map may have. Images as small as a few bytes can hold far more.
 const WALLS_MAX: usize = 1 << 23;
 
+/// Maps of ROS's `map_server`, with the image that they name.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    extensions: &[".yaml", ".yml"],
+    files: "a map_server's .yaml",
+    anchor: "",
+    read: |path, options| read(path, options.ros, options.unknown),
+};
+
 /// Reads a map and the image that it names, relative to the map's own folder. Coordinates are metres in the map's
 /// frame, y upwards. What lies around the image is no cell: its outer edge is no wall.
-pub(super) fn read(path: &Path, ros: Ros, unknown: Unknown) -> Result<Scene, ReadError> {
+fn read(path: &Path, ros: Ros, unknown: Unknown) -> Result<Scene, ReadError> {
     let text = read_text(path, SETTINGS_MAX)?;
     let map = parse(&text).map_err(|fault| fault.in_file(path))?;
     let image = path.parent().unwrap_or(Path::new("")).join(&map.image);

@@ -25,10 +25,12 @@ use std::collections::HashMap;
 use glam::{DAffine2, DVec2};
 use roxmltree::{Document, Node, ParsingOptions};
 
+use super::format::SceneFormat;
 use super::outlines::Outlines;
 use super::{Object, Scene, excerpt, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
+use crate::read_file::{SCENE_MAX, read_text};
 use namespaces::{INKSCAPE, SVG};
 use notes::Counts;
 use page::viewport_of;
@@ -66,12 +68,20 @@ const DEFINITIONS: [&str; 20] = [
     "title",
 ];
 
+/// Drawings in SVG.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    extensions: &[".svg"],
+    files: ".svg",
+    anchor: "give an element the id \"anchor\"",
+    read: |path, options| parse(&read_text(path, SCENE_MAX)?, options.flatten).map_err(|fault| fault.in_file(path)),
+};
+
 /// Reads a drawing.
 ///
 /// path, line, polyline, polygon, rect, circle and ellipse are walls, in groups and used ones too. What is hidden or
 /// not painted is none; texts and images are none and are counted. The element with the id or the Inkscape label
 /// `anchor` marks the anchor by its middle, painted or not.
-pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
+fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
     bounds::check_entities(text)?;
     bounds::check_tags(text)?;
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };

@@ -9,19 +9,29 @@ use glam::DVec2;
 use wkt::Wkt;
 use wkt::types::{Coord, LineString, Polygon};
 
+use super::format::SceneFormat;
 use super::geographic;
 use super::lines::Lines;
 use super::{Object, Scene, excerpt};
 use crate::geometry::check_point;
 use crate::number::{self, NumberFault, VANISHES};
 use crate::read_error::{Fault, Place};
+use crate::read_file::{SCENE_MAX, read_text};
 use statements::Statements;
+
+/// Well-known text.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    extensions: &[".wkt"],
+    files: ".wkt",
+    anchor: "put one POINT into the file",
+    read: |path, _| parse(&read_text(path, SCENE_MAX)?).map_err(|fault| fault.in_file(path)),
+};
 
 /// Reads geometries one after the other, each with or without `SRID=...;` before it.
 ///
 /// LINESTRING, MULTILINESTRING, POLYGON and MULTIPOLYGON give one wall for each pair of consecutive positions. A POINT
 /// is the anchor if the file has exactly one. Z and M are passed over, as are lines that start with `#` or `--`.
-pub(super) fn parse(text: &str) -> Result<Scene, Fault> {
+fn parse(text: &str) -> Result<Scene, Fault> {
     let mut found = Found::default();
     let mut statements = Statements::new(text);
     let mut count = 0;

@@ -2,6 +2,7 @@ use std::path::Path;
 
 use super::*;
 use crate::engine::Cpu;
+use crate::study::opened::ANSWERS;
 use crate::study::{Plan, merge};
 
 /// Two anchors, and blocks of 7 traces of which the last is smaller.
@@ -97,4 +98,42 @@ fn a_study_ends_with_a_whole_block() {
         assert!(state.stopped() != Stopped::Unfinished && state.traces().is_multiple_of(7), "{until}");
         assert_eq!(records.len() as u64, state.traces(), "{until}");
     }
+}
+
+/// The number that stands for how studies answer, and for each part of an answer its hash.
+const ANSWERED: (u32, [(&str, &str); 7]) = (
+    3,
+    [
+        ("scalars", "aaa6c4576cbf8e43"),
+        ("histograms", "a5344c1e49172f6b"),
+        ("survival", "c0a8657a4310f573"),
+        ("obstacles", "2a4045acd79be56d"),
+        ("ropes", "2c5e22e2ef9735b0"),
+        ("contacts", "e5fb24a9dc58dbc0"),
+        ("map", "a4734d1f5ba8bc0e"),
+    ],
+);
+
+#[test]
+fn answers_that_change_have_another_number() {
+    let mut hashers = ANSWERED.1.map(|_| blake3::Hasher::new());
+    for kind in ["uniform", "gaussian", "persistent", "waypoints"] {
+        let study = Study::open(Plan::parse(&STUDY.replace("persistent", kind)).unwrap(), Path::new("")).unwrap();
+        let (state, ..) = stopped_after_each(&study, Shard::WHOLE, 70);
+        let answer = serde_json::to_value(state.summary(&study)).unwrap();
+        for (hasher, (part, _)) in hashers.iter_mut().zip(ANSWERED.1) {
+            hasher.update(answer[part].to_string().as_bytes());
+        }
+    }
+    let found: Vec<(&str, String)> = hashers
+        .iter()
+        .zip(ANSWERED.1)
+        .map(|(hasher, (part, _))| (part, hasher.finalize().to_hex()[..16].to_owned()))
+        .collect();
+    let expected = ANSWERED.1.map(|(part, hash)| (part, hash.to_owned()));
+    assert!(
+        found == expected && ANSWERED.0 == ANSWERS,
+        "studies answer otherwise than before: raise the number of ANSWERS in src/study/opened.rs, so that no study \
+         goes on with what came out before, and write it here with {found:#?}"
+    );
 }

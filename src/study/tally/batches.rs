@@ -1,13 +1,16 @@
 //! Sums over blocks, from which ratios of correlated quantities get their errors.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use super::merge::Merge;
 
 /// Over the blocks: the sums of how much of something a block has (`sum`), of its square, and of its product with the
 /// block's size. All are whole numbers, so that the order of the blocks does not matter.
 ///
 /// Steps of one trace say nearly the same, blocks say nothing of each other: so the error of a ratio of sums comes from how
 /// it differs from block to block (batch means).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Batches {
     pub sum: u64,
     squares: u128,
@@ -20,12 +23,6 @@ impl Batches {
         self.sum += sum;
         self.squares += u128::from(sum) * u128::from(sum);
         self.products += u128::from(sum) * u128::from(size);
-    }
-
-    pub(crate) fn merge(&mut self, other: &Batches) {
-        self.sum += other.sum;
-        self.squares += other.squares;
-        self.products += other.products;
     }
 
     /// The ratio of the sum to the sum of the sizes, and its standard error, which is `None` for fewer than two blocks.
@@ -49,8 +46,16 @@ impl Batches {
     }
 }
 
+impl Merge for Batches {
+    fn merge_with(&mut self, other: Batches) {
+        self.sum += other.sum;
+        self.squares += other.squares;
+        self.products += other.products;
+    }
+}
+
 /// The sizes of the blocks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Sizes {
     pub blocks: u64,
     pub sum: u64,
@@ -63,8 +68,10 @@ impl Sizes {
         self.sum += size;
         self.squares += u128::from(size) * u128::from(size);
     }
+}
 
-    pub(crate) fn merge(&mut self, other: &Sizes) {
+impl Merge for Sizes {
+    fn merge_with(&mut self, other: Sizes) {
         self.blocks += other.blocks;
         self.sum += other.sum;
         self.squares += other.squares;

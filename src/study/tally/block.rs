@@ -1,161 +1,131 @@
 //! Counting a block, trace after trace, so that one that is stopped in the middle can be gone on with.
 
-use rustc_hash::FxHashMap as HashMap;
+use std::borrow::Cow;
+
+use glam::DVec2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::follow::{Held, Span, follow};
-use super::ropes::{Key, Ropes};
+use super::merge::Merge;
 use super::setting::Setting;
-use super::{Counts, Moments, SCALARS};
-use crate::rope::{EventKind, Side, TraceRecord};
+use super::tally::Tally;
+use super::totals::Totals;
+use super::{TallyPlan, table};
+use crate::rope::{Lasting, TraceRecord, spans};
+use crate::scene::Model;
+use crate::study::plan_error::PlanError;
+use crate::study::tally;
 use crate::trace::SettledTrace;
 
 /// A trace and what became of it.
 pub(crate) struct Traced<'a> {
     pub trace: &'a SettledTrace,
     pub record: &'a TraceRecord,
+    /// The scene with the trace's anchor, and the anchor's number.
+    pub model: &'a Model,
+    pub anchor: usize,
+    /// Where the free end is after each step.
+    pub ends: Cow<'a, [DVec2]>,
 }
 
-/// A block under way: what was counted of its first traces.
-#[derive(Clone, Default, Serialize, Deserialize)]
-pub(crate) struct Block {
-    moments: [Moments; SCALARS.len()],
-    /// All but what is known only once the block is whole.
-    counts: Counts,
-    /// How often the rope wrapped round each wall end, and the steps with the rope about it.
-    touched: HashMap<u32, [u64; 2]>,
-    /// Of each cell of the map: visits, the lengths of the ropes then, steps with a contact there.
-    cells: HashMap<u32, [u64; 3]>,
-    /// How many traces ended with each rope.
-    ropes: HashMap<Key, u64>,
-    traces: u64,
-    looks: u64,
-}
-
-impl Block {
-    /// A block of which nothing is counted.
-    pub(crate) fn new(setting: &Setting) -> Self {
-        let counts = Counts { exceeded: vec![Default::default(); setting.limits.len()], ..Counts::default() };
-        Block { counts, ..Block::default() }
+impl<'a> Traced<'a> {
+    pub(crate) fn new(setting: &'a Setting, trace: &'a SettledTrace, record: &'a TraceRecord) -> Self {
+        let anchor = setting.anchor(record.trace);
+        Traced { trace, record, model: &setting.models[anchor], anchor, ends: trace.ends() }
     }
 
+    /// Calls `each` with what lasts over some steps: the rope between events, and its contacts. O(events).
+    pub(super) fn spans(&self, each: impl FnMut(Lasting<'_>)) {
+        spans(self.model.anchor(), self.model.vertices(), self.record.steps, &self.record.events, each);
+    }
+}
+
+/// How large a block is that is whole.
+pub(crate) struct Size {
+    pub number: u64,
+    pub traces: u64,
+    /// The number of steps after which a rope was looked at: one more for each trace than it has steps.
+    pub looks: u64,
+}
+
+macro_rules! blocks {
+    (options { $($_:tt)* } tallies { $($(#[$__:meta])* $name:ident: $Answer:ty = $Tally:ty;)* }) => {
+        /// All tallies of a study, and what they have in common.
+        pub(crate) struct Tallies {
+            pub setting: Setting,
+            $(pub $name: $Tally,)*
+        }
+
+        impl Tallies {
+            /// Whether the options will do, as far as can be told without the scene.
+            pub(crate) fn check(options: &TallyPlan) -> Result<(), PlanError> {
+                Setting::check(options)?;
+                $(<$Tally>::check(options)?;)*
+                Ok(())
+            }
+
+            /// Made ready for a study's scene.
+            ///
+            /// # Errors
+            ///
+            /// An option that does not go with the scene.
+            pub(crate) fn new(options: &TallyPlan, setting: Setting) -> Result<Self, PlanError> {
+                $(let $name = <$Tally>::new(options, &setting)?;)*
+                Ok(Tallies { setting, $($name,)* })
+            }
+        }
+
+        /// A block under way: what was counted of its first traces.
+        #[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
+        pub(crate) struct Block {
+            traces: u64,
+            looks: u64,
+            totals: Totals,
+            $($name: <$Tally as Tally>::Part,)*
+        }
+
+        impl Block {
+            /// Counts its next traces. O(steps looked at by the map + events + steps up to where limits are exceeded).
+            pub(crate) fn add(&mut self, tallies: &Tallies, traced: &[Traced<'_>]) {
+                for traced in traced {
+                    self.traces += 1;
+                    self.looks += traced.record.steps + 1;
+                    self.totals.add(traced);
+                    $(tallies.$name.add(&mut self.$name, traced);)*
+                }
+            }
+
+            /// The counts of the block, once it is whole.
+            pub(crate) fn finish(self, tallies: &Tallies, number: u64) -> Counts {
+                let size = Size { number, traces: self.traces, looks: self.looks };
+                Counts {
+                    totals: self.totals.finish(&size),
+                    $($name: tallies.$name.finish(self.$name, &size),)*
+                }
+            }
+        }
+
+        /// Counts of some blocks.
+        #[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
+        pub(crate) struct Counts {
+            pub totals: Totals,
+            $(pub $name: <$Tally as Tally>::Counts,)*
+        }
+
+        impl Merge for Counts {
+            fn merge_with(&mut self, other: Counts) {
+                self.totals.merge_with(other.totals);
+                $(self.$name.merge_with(other.$name);)*
+            }
+        }
+    };
+}
+
+table!(blocks);
+
+impl Block {
     /// How many of its traces are counted.
     pub(crate) fn traces(&self) -> u64 {
         self.traces
     }
-
-    /// Counts its next traces. O(steps looked at by the map + events + steps up to where limits are exceeded).
-    pub(crate) fn add(&mut self, setting: &Setting, traced: &[Traced<'_>]) {
-        for Traced { trace, record } in traced {
-            let counts = &mut self.counts;
-            let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count() as u64;
-            let unwraps = record.events.len() as u64 - wraps;
-            let values = [u64::from(record.depth), u64::from(record.max_depth), wraps, unwraps];
-            let lengths = [record.length, record.max_length];
-            for (moments, value) in self.moments.iter_mut().zip(lengths.into_iter().chain(values.map(|v| v as f64))) {
-                moments.add(value);
-            }
-            for ((bins, classes), length) in counts.bins.iter_mut().zip(&mut counts.lengths).zip(lengths) {
-                *bins.entry((length / setting.bin) as u64).or_default() += 1;
-                classes.add(length);
-            }
-            for (counts, value) in counts.values.iter_mut().zip(values) {
-                *counts.entry(value).or_default() += 1;
-            }
-            self.looks += record.steps + 1;
-            counts.longest_trace = counts.longest_trace.max(record.steps);
-            counts.still += trace.walked().still as u64;
-            counts.met += trace.walked().met as u64;
-            counts.jumps += trace.jumps() as u64;
-            counts.crossing[0] += u64::from(trace.crossings() > 0);
-            counts.crossing[1] += trace.crossings() as u64;
-            counts.events += record.events.len() as u64;
-            let anchor = setting.model(record.trace).anchor();
-            let end = *trace.points().last().expect("a trace has points");
-            setting.obstacles.wound(anchor, &record.wraps, end, |obstacle, turns| {
-                let wound = counts.wound.entry(obstacle).or_default();
-                *(if turns > 0 { &mut wound.left } else { &mut wound.right }) += 1;
-                wound.turns += turns;
-                wound.squares += (turns * turns) as u64;
-            });
-            self.follow(setting, trace, record);
-            *self.ropes.entry(key(setting, record)).or_default() += 1;
-            self.traces += 1;
-        }
-    }
-
-    /// The moments of the block's scalars and its counts, once it is whole.
-    pub(crate) fn finish(self) -> ([Moments; SCALARS.len()], Counts) {
-        let Block { moments, mut counts, touched, cells, ropes, traces, looks } = self;
-        counts.ropes = Ropes::of_block(ropes);
-        counts.traces.add(traces);
-        counts.looks.add(looks);
-        for (vertex, [wraps, steps]) in touched {
-            let touched = counts.touched.entry(vertex).or_default();
-            touched.wraps.add(traces, wraps);
-            touched.steps.add(looks, steps);
-        }
-        for (cell, [visits, lengths, contacts]) in cells {
-            let cell = counts.cells.entry(cell).or_default();
-            if visits > 0 {
-                cell.visits.add(visits);
-                cell.lengths.add(visits, lengths);
-            }
-            cell.contacts.add(looks, contacts);
-        }
-        (moments, counts)
-    }
-
-    /// What has to be looked at step by step: contacts, limits, the map.
-    fn follow(&mut self, setting: &Setting, trace: &SettledTrace, record: &TraceRecord) {
-        let Block { counts, touched, cells, .. } = self;
-        let model = setting.model(record.trace);
-        let ends = trace.ends();
-        // The limits that are exceeded at some time, and the first of them that was not yet.
-        let (exceeded, mut next) = (setting.limits.partition_point(|&limit| limit < record.max_length), 0);
-        let contact_cells = setting.cells.as_ref();
-        let span = |span: Span| {
-            let length = |step: u64| span.length + ends[step as usize].distance(span.pivot);
-            if next < exceeded {
-                for step in span.steps.clone() {
-                    while next < exceeded && length(step) > setting.limits[next] {
-                        let gone = setting.times.partition_point(|&time| time < step) as u64;
-                        *counts.exceeded[next].entry(gone).or_default() += 1;
-                        next += 1;
-                    }
-                }
-            }
-            if let Some(grid) = &setting.cells {
-                let first = span.steps.start.next_multiple_of(setting.every);
-                for step in (first..span.steps.end).step_by(setting.every as usize) {
-                    if let Some(cell) = grid.of(ends[step as usize]) {
-                        let [visits, lengths, _] = cells.entry(cell).or_default();
-                        *visits += 1;
-                        *lengths += (length(step) / setting.unit + 0.5) as u64;
-                    }
-                }
-            }
-        };
-        let mut contacts: Vec<(u32, u64)> = Vec::new();
-        let left = |held: Held, steps| contacts.push((held.vertex, steps));
-        follow(model.anchor(), model.vertices(), record.steps, &record.events, span, left);
-        for (vertex, steps) in contacts {
-            let [wraps, held] = touched.entry(vertex).or_default();
-            *wraps += 1;
-            *held += steps;
-            if let Some(cell) = contact_cells.and_then(|grid| grid.of(model.vertices()[vertex as usize])) {
-                cells.entry(cell).or_default()[2] += steps;
-            }
-        }
-    }
-}
-
-/// What tells a taut rope from others.
-fn key(setting: &Setting, record: &TraceRecord) -> Key {
-    let model = setting.model(record.trace);
-    let contact = |&(at, side)| {
-        let vertex = model.vertex_at(at).expect("ropes turn at wall ends");
-        2 * vertex + u32::from(side == Side::Right)
-    };
-    std::iter::once(setting.anchor(record.trace) as u32).chain(record.wraps.iter().map(contact)).collect()
 }

@@ -1,60 +1,77 @@
 //! What is counted of every trace, block by block.
 //!
-//! All but the moments are whole numbers, so that blocks may be put together in any order; the moments are kept for each
-//! block and put together in the order of the blocks.
+//! All but the moments are whole numbers, so that blocks may be put together in any order; the moments are kept for
+//! each block and put together in the order of the blocks.
+//!
+//! A tally is a file with a struct that is a [`Tally`], and a line in [`table`], in the order of the
+//! summary; its options have their lines there too, in the order of a plan.
 
 mod batches;
 mod block;
-mod counts;
-mod follow;
+pub(super) mod contacts;
+pub(super) mod histograms;
 mod lengths;
-mod moments;
-mod ropes;
+pub(super) mod map;
+mod merge;
+pub(super) mod obstacles;
+mod options;
+pub(super) mod ropes;
+pub(super) mod scalars;
 mod setting;
+pub(super) mod survival;
+#[allow(clippy::module_inception)] // the trait is named as what it is
+mod tally;
+mod totals;
 mod winding;
 
-use std::collections::BTreeMap;
-
-use serde::{Deserialize, Serialize};
-
-pub(super) use batches::{Batches, Sizes};
-pub(super) use block::{Block, Traced};
-pub(super) use counts::{CellCounts, Counts, Touched, Wound};
-pub(super) use lengths::of_rank;
-pub(crate) use moments::Moments;
+pub(super) use block::{Block, Counts, Tallies, Traced};
+pub use contacts::Contact;
+pub use histograms::{Bin, Histogram};
+pub use map::{Cell, Map};
+pub(super) use merge::Merge;
+pub use obstacles::Obstacle;
+pub use options::TallyPlan;
+pub use ropes::CommonRope;
+pub use scalars::{Quantile, Scalar, quantity};
 pub(super) use setting::Setting;
+pub use survival::{Survival, SurvivalPoint};
+pub(super) use tally::Tally;
 
-/// The numbers of which every trace has one.
-pub(super) const SCALARS: [&str; 6] = ["length", "max_length", "depth", "max_depth", "wraps", "unwraps"];
-
-/// What some blocks of a study have counted.
-#[derive(Clone, Default, Serialize, Deserialize)]
-pub(super) struct Tallies {
-    /// The moments of each block's scalars.
-    pub moments: BTreeMap<u64, [Moments; SCALARS.len()]>,
-    pub counts: Counts,
+/// All tallies and their options, handed to the macro `$to`.
+///
+/// An option is a field of a plan's `[tallies]`: its description, its name, its type, and what it is unless told
+/// otherwise. A tally is a field of the summary: its description, its name, its type, and what counts it.
+macro_rules! table {
+    ($to:ident) => {
+        $to! { options {
+        /// How often intervals are to hold the truth, between 0 and 1.
+        confidence: f64 = 0.95;
+        /// Rope lengths: for each, when the rope first becomes longer (the survival curve).
+        limits: Vec<f64> = Vec::new();
+        /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's size.
+        bin: f64 = 0.0;
+        /// How many cells the longer side of the map of the plane has; they are squares. 0 for no map.
+        map: u32 = 64;
+        /// After how many steps the map looks at the free end again: neighbouring steps say nearly the same.
+        map_every: u32 = 8;
+        /// How many of the most common taut ropes are reported.
+        ropes: u32 = 10;
+        } tallies {
+        /// One number a trace: its distribution over the traces.
+        scalars: Vec<tally::Scalar> = tally::scalars::Scalars;
+        /// Histograms of the rope length at the end and of the greatest.
+        histograms: Vec<tally::Histogram> = tally::histograms::Histograms;
+        /// For each limit, when the rope became longer.
+        survival: Vec<tally::Survival> = tally::survival::Limits;
+        /// The obstacles that ropes were wound about at the end, the most often first.
+        obstacles: Vec<tally::Obstacle> = tally::obstacles::Obstacles;
+        /// The most common taut ropes at the end, the most common first.
+        ropes: Vec<tally::CommonRope> = tally::ropes::Ropes;
+        /// The wall ends with which ropes had contacts, those with the greatest share of steps first, at most a thousand.
+        contacts: Vec<tally::Contact> = tally::contacts::Contacts;
+        /// The plane.
+        map: Option<tally::Map> = tally::map::Cells;
+        } }
+    };
 }
-
-impl Tallies {
-    /// Adds a block. Its number must be new.
-    pub(super) fn add(&mut self, block: u64, moments: [Moments; SCALARS.len()], counts: Counts) {
-        let known = self.moments.insert(block, moments);
-        debug_assert!(known.is_none(), "a block is added once");
-        self.counts.merge(counts);
-    }
-
-    /// Adds another part of the study, none of whose blocks is here.
-    pub(super) fn merge(&mut self, other: Tallies) {
-        self.moments.extend(other.moments);
-        self.counts.merge(other.counts);
-    }
-
-    /// The moments over all blocks, in their order.
-    pub(super) fn scalars(&self) -> [Moments; SCALARS.len()] {
-        let mut all = [Moments::default(); SCALARS.len()];
-        for block in self.moments.values() {
-            all.iter_mut().zip(block).for_each(|(all, block)| all.merge(block));
-        }
-        all
-    }
-}
+pub(super) use table;

@@ -1,96 +1,48 @@
-//! What the tallies of all blocks have in common.
+//! What all tallies of a study go by.
 
 use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::winding::Obstacles;
+use super::TallyPlan;
+use crate::geometry::number;
 use crate::scene::Model;
-use crate::study::plan::Plan;
+use crate::study::estimate::Confidence;
+use crate::study::plan_error::PlanError;
 
-/// At how many steps survival curves are given.
-const TIMES: u64 = 100;
-
-/// The map's cells: squares.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Cells {
-    pub low: DVec2,
-    pub high: DVec2,
-    pub cell: f64,
-    pub columns: u32,
-    pub rows: u32,
-}
-
-impl Cells {
-    /// `most` cells along the longer side of a box.
-    fn new((low, high): (DVec2, DVec2), most: u32) -> Self {
-        let size = high - low;
-        let longer = size.max_element();
-        let cell = if longer > 0.0 { longer / f64::from(most) } else { 1.0 };
-        let [columns, rows] = [size.x, size.y].map(|side| ((side / cell).ceil() as u32).clamp(1, most));
-        // A box that is not as high as its cells still has all that lies in them.
-        let high = high.max(low + cell * DVec2::new(f64::from(columns), f64::from(rows)));
-        Cells { low, high, cell, columns, rows }
-    }
-
-    /// The number of the cell of `p`; `None` outside of the map.
-    pub(super) fn of(&self, p: DVec2) -> Option<u32> {
-        if !(p.cmpge(self.low).all() && p.cmple(self.high).all()) {
-            return None;
-        }
-        let at = (p - self.low) / self.cell;
-        // What lies on the upper border belongs to the last cells.
-        let [column, row] = [(at.x, self.columns), (at.y, self.rows)].map(|(c, most)| (c as u32).min(most - 1));
-        Some(column + self.columns * row)
-    }
-}
-
-/// What the tallies of all blocks have in common.
+/// What all tallies of a study go by.
 pub(crate) struct Setting {
     /// The scene with each of its anchors; trace i has anchor i modulo their number.
     pub models: Vec<Arc<Model>>,
-    pub limits: Vec<f64>,
-    /// The steps at which survival curves are given, ascending.
-    pub times: Vec<u64>,
-    /// The width of a histogram's bins.
-    pub bin: f64,
-    /// Lengths are summed in whole numbers of this.
-    pub unit: f64,
-    pub cells: Option<Cells>,
-    /// After how many steps the map looks again.
-    pub every: u64,
-    pub obstacles: Obstacles,
+    /// The corners of the box that holds all traces.
+    pub low: DVec2,
+    pub high: DVec2,
+    /// How many steps each trace has; `None` for given traces, of which that is only known in the end.
+    pub steps: Option<u32>,
+    /// How sure intervals are.
+    pub confidence: Confidence,
     /// The label of each wall end; empty if there are none.
-    pub labels: Vec<Option<String>>,
+    labels: Vec<Option<String>>,
 }
 
 impl Setting {
-    /// For ropes in `models`, and traces between `low` and `high`.
-    pub(crate) fn new(plan: &Plan, models: Vec<Arc<Model>>, (low, high): (DVec2, DVec2)) -> Self {
-        let extent = power_of_two((high - low).max_element());
-        let tallies = &plan.tallies;
-        let mut limits = tallies.limits.clone();
-        limits.sort_by(f64::total_cmp);
-        let times = match plan.walk.steps() {
-            Some(steps) => {
-                (0..=TIMES).map(|i| (u128::from(steps) * u128::from(i) / u128::from(TIMES)) as u64).collect()
-            }
-            // Nobody knows yet how long given traces are.
-            None => (0..4).chain((8..128).map(|i| (4 + i % 4) << (i / 4 - 2))).collect(),
-        };
-        let mut times: Vec<u64> = times;
-        times.dedup();
-        Setting {
-            limits,
-            times,
-            bin: if tallies.bin > 0.0 { tallies.bin } else { extent / 64.0 },
-            unit: extent / f64::from(1 << 20),
-            cells: (tallies.map > 0).then(|| Cells::new((low, high), tallies.map)),
-            every: u64::from(tallies.map_every.max(1)),
-            obstacles: Obstacles::new(&models[0]),
-            labels: models[0].scene().labels().into_iter().map(|label| label.map(str::to_owned)).collect(),
-            models,
+    /// Whether the options that belong to no single tally will do.
+    pub(super) fn check(options: &TallyPlan) -> Result<(), PlanError> {
+        if options.confidence > 0.0 && options.confidence < 1.0 {
+            return Ok(());
         }
+        Err(PlanError::new(format!("tallies.confidence: {} is not between 0 and 1", number(options.confidence))))
+    }
+
+    /// For ropes in `models`, and traces of so many steps between `low` and `high`.
+    pub(crate) fn new(
+        options: &TallyPlan,
+        models: Vec<Arc<Model>>,
+        (low, high): (DVec2, DVec2),
+        steps: Option<u32>,
+    ) -> Self {
+        let labels = models[0].scene().labels().into_iter().map(|label| label.map(str::to_owned)).collect();
+        Setting { confidence: Confidence::new(options.confidence), models, low, high, steps, labels }
     }
 
     pub(crate) fn model(&self, trace: u64) -> &Arc<Model> {
@@ -100,6 +52,36 @@ impl Setting {
     /// The number of the trace's anchor.
     pub(crate) fn anchor(&self, trace: u64) -> usize {
         (trace % self.models.len() as u64) as usize
+    }
+
+    /// Whether a picture of the scene has y pointing down.
+    pub(super) fn y_down(&self) -> bool {
+        self.models[0].scene().y_down()
+    }
+
+    /// Where a wall end is.
+    pub(super) fn at(&self, vertex: u32) -> [f64; 2] {
+        self.models[0].vertices()[vertex as usize].into()
+    }
+
+    /// What the scene's file calls the thing to which a wall end belongs.
+    pub(super) fn label(&self, vertex: u32) -> Option<String> {
+        self.labels.get(vertex as usize).cloned().flatten()
+    }
+
+    /// Whether the scene's file calls nothing anything.
+    pub(super) fn is_nameless(&self) -> bool {
+        self.labels.is_empty()
+    }
+
+    /// The greatest power of two that is not above the longer side of the box; 1 for a box of no size.
+    pub(super) fn extent(&self) -> f64 {
+        power_of_two((self.high - self.low).max_element())
+    }
+
+    /// Lengths are summed in whole numbers of this.
+    pub(super) fn unit(&self) -> f64 {
+        self.extent() / f64::from(1 << 20)
     }
 }
 
@@ -113,17 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_cover_the_box() {
-        let cells = Cells::new((DVec2::new(-1.0, 2.0), DVec2::new(3.0, 3.0)), 8);
-        assert_eq!((cells.cell, cells.columns, cells.rows), (0.5, 8, 2));
-        assert_eq!(cells.of(DVec2::new(-1.0, 2.0)), Some(0));
-        assert_eq!(cells.of(DVec2::new(3.0, 3.0)), Some(15));
-        assert_eq!(cells.of(DVec2::new(-0.4, 2.6)), Some(9));
-        assert_eq!(cells.of(DVec2::new(3.1, 3.0)), None);
-        // 1 divided by a 49th is more than 49.
-        let cells = Cells::new((DVec2::ZERO, DVec2::ONE), 49);
-        assert_eq!(cells.of(DVec2::ONE), Some(49 * 49 - 1));
-        assert_eq!(Cells::new((DVec2::ZERO, DVec2::ZERO), 8).of(DVec2::ZERO), Some(0));
+    fn extents_are_powers_of_two() {
         assert_eq!([0.0, 1.0, 1.5, 0.3, 5.0].map(power_of_two), [1.0, 1.0, 1.0, 0.25, 4.0]);
     }
 }

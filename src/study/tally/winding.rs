@@ -1,4 +1,4 @@
-//! How often ropes go about obstacles.
+//! How often ropes go about islands: walls that hang together by common ends.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,7 +9,7 @@ use crate::scene::Model;
 
 /// Walls that hang together by common ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Obstacle {
+pub(crate) struct Island {
     /// The lowest number among its wall ends.
     pub vertex: u32,
     pub walls: u32,
@@ -19,11 +19,11 @@ pub(crate) struct Obstacle {
     pub middle: DVec2,
 }
 
-/// The obstacles of a scene, from left to right.
+/// The islands of a scene, from left to right.
 #[derive(Debug)]
-pub(crate) struct Obstacles(Vec<Obstacle>);
+pub(crate) struct Islands(Vec<Island>);
 
-impl Obstacles {
+impl Islands {
     /// O(walls log walls).
     pub(crate) fn new(model: &Model) -> Self {
         let walls = model.scene().walls();
@@ -40,33 +40,33 @@ impl Obstacles {
             let (u, v) = (root(&mut parents, u), root(&mut parents, v));
             parents[u.max(v) as usize] = u.min(v);
         }
-        let mut of: Vec<Option<Obstacle>> = vec![None; model.vertices().len()];
+        let mut of: Vec<Option<Island>> = vec![None; model.vertices().len()];
         for (wall, &[u, _]) in walls.iter().enumerate() {
             let vertex = root(&mut parents, u);
             let [a, b] = model.scene().ends(wall);
             let middle = a / 2.0 + b / 2.0;
-            of[vertex as usize].get_or_insert(Obstacle { vertex, walls: 0, named: vertex, middle }).walls += 1;
+            of[vertex as usize].get_or_insert(Island { vertex, walls: 0, named: vertex, middle }).walls += 1;
         }
         // From the last to the first, so that the first one stays.
         for (v, _) in
             (0..).zip(model.scene().labels()).filter(|(_, label)| label.is_some()).collect::<Vec<_>>().into_iter().rev()
         {
-            if let Some(obstacle) = &mut of[root(&mut parents, v) as usize] {
-                obstacle.named = v;
+            if let Some(island) = &mut of[root(&mut parents, v) as usize] {
+                island.named = v;
             }
         }
-        let mut obstacles: Vec<Obstacle> = of.into_iter().flatten().collect();
-        obstacles.sort_by(|a, b| a.middle.x.total_cmp(&b.middle.x).then(a.vertex.cmp(&b.vertex)));
-        Obstacles(obstacles)
+        let mut islands: Vec<Island> = of.into_iter().flatten().collect();
+        islands.sort_by(|a, b| a.middle.x.total_cmp(&b.middle.x).then(a.vertex.cmp(&b.vertex)));
+        Islands(islands)
     }
 
-    /// The obstacle of that wall end.
-    pub(crate) fn get(&self, vertex: u32) -> Option<&Obstacle> {
+    /// The island of that wall end.
+    pub(crate) fn get(&self, vertex: u32) -> Option<&Island> {
         self.0.iter().find(|o| o.vertex == vertex)
     }
 
-    /// Calls `each` with the obstacles about which the rope from `anchor` round `wraps` to `end` goes at least once all the
-    /// way, and how often, counter-clockwise counting as positive.
+    /// Calls `each` with the islands about which the rope from `anchor` round `wraps` to `end` goes at least once all
+    /// the way, and how often, counter-clockwise counting as positive.
     pub(crate) fn wound(&self, anchor: DVec2, wraps: &[(DVec2, Side)], end: DVec2, mut each: impl FnMut(u32, i64)) {
         // A straight line sees less than half a turn, so three of them are needed for a whole one.
         if wraps.len() < 2 {
@@ -74,13 +74,13 @@ impl Obstacles {
         }
         let (low, high) = wraps.iter().fold((anchor.min(end), anchor.max(end)), |(l, h), w| (l.min(w.0), h.max(w.0)));
         let first = self.0.partition_point(|o| o.middle.x < low.x);
-        for obstacle in self.0[first..].iter().take_while(|o| o.middle.x <= high.x) {
-            if obstacle.middle.y < low.y || obstacle.middle.y > high.y {
+        for island in self.0[first..].iter().take_while(|o| o.middle.x <= high.x) {
+            if island.middle.y < low.y || island.middle.y > high.y {
                 continue;
             }
-            let turns = turns(obstacle.middle, anchor, wraps, end);
+            let turns = turns(island.middle, anchor, wraps, end);
             if turns != 0 {
-                each(obstacle.vertex, turns);
+                each(island.vertex, turns);
             }
         }
     }
@@ -126,11 +126,11 @@ mod tests {
     fn a_rope_about_a_wall_counts_its_turns() {
         let walls = [[p(0.0, 0.0), p(1.0, 0.0)], [p(1.0, 0.0), p(1.0, 1.0)], [p(5.0, 5.0), p(6.0, 5.0)]];
         let model = Model::new(Scene::new(walls).unwrap(), Some(p(-3.0, -1.0))).unwrap();
-        let obstacles = Obstacles::new(&model);
-        assert_eq!(obstacles.0.iter().map(|o| (o.vertex, o.walls)).collect::<Vec<_>>(), [(0, 2), (3, 1)]);
+        let islands = Islands::new(&model);
+        assert_eq!(islands.0.iter().map(|o| (o.vertex, o.walls)).collect::<Vec<_>>(), [(0, 2), (3, 1)]);
         let turns = |wraps: &[(DVec2, Side)], end| {
             let mut found = vec![];
-            obstacles.wound(model.anchor(), wraps, end, |o, turns| found.push((o, turns)));
+            islands.wound(model.anchor(), wraps, end, |o, turns| found.push((o, turns)));
             found
         };
         // Counter-clockwise about both ends of the lower wall, with the wall on the left, along the wall twice.
@@ -144,10 +144,10 @@ mod tests {
         assert_eq!(turns(&[east, top, west, east, top, west, east], p(2.0, 0.5)), [(0, 2)]);
         // Clockwise round a lone wall, along it.
         let model = Model::new(Scene::new([[p(0.0, 0.0), p(1.0, 0.0)]]).unwrap(), Some(p(-3.0, -1.0))).unwrap();
-        let obstacles = Obstacles::new(&model);
+        let islands = Islands::new(&model);
         let (west, east) = ((p(0.0, 0.0), Side::Right), (p(1.0, 0.0), Side::Right));
         let mut found = vec![];
-        obstacles.wound(model.anchor(), &[west, east, west, east], p(0.5, -1.0), |o, turns| found.push((o, turns)));
+        islands.wound(model.anchor(), &[west, east, west, east], p(0.5, -1.0), |o, turns| found.push((o, turns)));
         assert_eq!(found, [(0, -1)]);
     }
 }

@@ -3,12 +3,26 @@
 use std::ops::ControlFlow::Continue;
 
 use glam::DVec2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::room::{Room, point};
-use super::stride::Stride;
-use crate::geometry::{higher, lower, opposite, orient, same_side};
-use crate::study::AtWalls;
+use super::kind::Stride;
+use super::room::Room;
+use crate::geometry::{higher, lower, opposite, orient, point, same_side};
 use crate::study::random::Random;
+
+/// What becomes of a step that meets a wall or leaves the scene's bounding box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AtWalls {
+    /// It is drawn again.
+    #[default]
+    Redraw,
+    /// The free end stays where it is for that step.
+    Reject,
+    /// It is thrown back by the wall as light by a mirror.
+    Reflect,
+}
 
 /// How often a step is drawn again before the free end stays where it is.
 pub(super) const TRIES: u32 = 32;

@@ -2,6 +2,7 @@
 
 mod at_walls;
 mod gaussian;
+mod kind;
 mod links;
 mod paths;
 mod persistent;
@@ -11,21 +12,95 @@ mod stride;
 mod uniform;
 mod waypoints;
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub(in crate::study) use self::room::point;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use self::gaussian::Gaussian;
-use self::persistent::Persistent;
+pub use self::at_walls::AtWalls;
+pub use self::gaussian::GaussianWalk;
+pub use self::persistent::PersistentWalk;
+pub use self::start::Start;
+pub use self::uniform::UniformWalk;
+pub use self::waypoints::WaypointDrive;
+
+use self::kind::{Dice, Draw, Kind};
 use self::room::Room;
 use self::start::Starts;
-use self::uniform::Uniform;
-use self::waypoints::Waypoints;
-use super::random::{Purpose, Random};
-use super::{AtWalls, PlanError, WalkPlan};
+use super::plan_error::PlanError;
+use super::random::Purpose;
 use crate::geometry::number;
 use crate::scene::Model;
 use crate::trace::{SettledTrace, Trace, Walked, settle_clear, settle_owned};
+
+macro_rules! kinds {
+    ($($(#[$doc:meta])* $name:ident: $Plan:ty;)*) => {
+        /// How the free end is dragged. No step ever touches a wall.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+        pub enum WalkPlan {
+            $($(#[$doc])* $name($Plan),)*
+            /// The traces of a file, in the order of their numbers.
+            Given {
+                /// A .csv or .parquet of points, relative to the study's own folder.
+                file: PathBuf,
+            },
+        }
+
+        impl WalkPlan {
+            /// The kind of walk; `None` for given traces.
+            fn kind(&self) -> Option<&dyn Kind> {
+                match self {
+                    $(WalkPlan::$name(plan) => Some(plan),)*
+                    WalkPlan::Given { .. } => None,
+                }
+            }
+        }
+    };
+}
+
+// The kinds of walks that are drawn, each in a file of its own.
+kinds! {
+    /// A random walk whose steps all have the same length and any direction.
+    Uniform: UniformWalk;
+    /// A random walk whose steps are normally distributed in x and y.
+    Gaussian: GaussianWalk;
+    /// A walk that keeps its heading but for noise: the heading turns by a uniform angle in each step.
+    Persistent: PersistentWalk;
+    /// Drives along shortest collision-free paths from one random goal to the next.
+    Waypoints: WaypointDrive;
+}
+
+impl WalkPlan {
+    /// The file of given traces; `None` for drawn ones.
+    pub fn given(&self) -> Option<&Path> {
+        match self {
+            WalkPlan::Given { file } => Some(file),
+            _ => None,
+        }
+    }
+
+    /// The length of a step, or the standard deviation of one in x and in y; `None` for given traces.
+    pub fn step(&self) -> Option<f64> {
+        self.kind().map(Kind::step)
+    }
+
+    /// What becomes of a step that meets a wall; `None` for traces none of whose steps is drawn so.
+    pub fn at_walls(&self) -> Option<AtWalls> {
+        self.kind().and_then(Kind::at_walls)
+    }
+
+    /// How many steps each trace has; `None` for given traces.
+    pub fn steps(&self) -> Option<u32> {
+        self.kind().map(Kind::steps)
+    }
+
+    /// Whether its numbers can be walked with.
+    pub(super) fn check(&self) -> Result<(), PlanError> {
+        self.kind().map_or(Ok(()), |kind| kind.check_all())
+    }
+}
 
 /// Random traces in a model's scene. Trace n of a seed is the same on every machine, whatever else is drawn.
 ///
@@ -36,29 +111,20 @@ use crate::trace::{SettledTrace, Trace, Walked, settle_clear, settle_owned};
 /// use std::sync::Arc;
 /// use tautline::example::BuiltIn;
 /// use tautline::scene::Model;
-/// use tautline::study::{AtWalls, Start, WalkPlan, Walks};
+/// use tautline::study::{AtWalls, Start, UniformWalk, WalkPlan, Walks};
 ///
 /// let model = Arc::new(Model::new(BuiltIn::Rooms.scene(1), None)?);
-/// let plan = WalkPlan::Uniform { step: 0.25, steps: 100, start: Start::Anchor, at_walls: AtWalls::Redraw };
-/// let walks = Walks::new(model, &plan, 1)?;
+/// let uniform = UniformWalk { step: 0.25, steps: 100, start: Start::Anchor, at_walls: AtWalls::Redraw };
+/// let walks = Walks::new(model, &WalkPlan::Uniform(uniform), 1)?;
 /// let trace = walks.trace(7);
 /// assert_eq!((trace.id(), trace.steps(), trace.violation()), (7, 100, None));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Walks {
     room: Room,
-    kind: Kind,
+    drawer: Box<dyn Draw>,
     starts: Starts,
-    steps: u32,
     seed: u64,
-}
-
-/// What steps are like.
-enum Kind {
-    Uniform { step: f64, at_walls: AtWalls },
-    Gaussian { step: f64, at_walls: AtWalls },
-    Persistent { step: f64, turn: f64, at_walls: AtWalls },
-    Waypoints(Box<Waypoints>),
 }
 
 impl Walks {
@@ -71,18 +137,10 @@ impl Walks {
     /// scene without room, coordinates that cannot be triangulated where that is needed; and given traces, which are not
     /// drawn.
     pub fn new(model: Arc<Model>, plan: &WalkPlan, seed: u64) -> Result<Walks, PlanError> {
-        plan.check()?;
-        let (steps, start) = match *plan {
-            WalkPlan::Uniform { steps, start, .. }
-            | WalkPlan::Gaussian { steps, start, .. }
-            | WalkPlan::Persistent { steps, start, .. }
-            | WalkPlan::Waypoints { steps, start, .. } => (steps, start),
-            WalkPlan::Given { .. } => {
-                return Err(PlanError::new(
-                    "walk.kind: given traces are read, not drawn; give another kind to draw some",
-                ));
-            }
+        let Some(kind) = plan.kind() else {
+            return Err(PlanError::new("walk.kind: given traces are read, not drawn; give another kind to draw some"));
         };
+        kind.check_all()?;
         let room = Room::new(model);
         if !(room.high - room.low).cmpgt(glam::DVec2::ZERO).all() {
             return Err(PlanError::new(
@@ -91,7 +149,8 @@ impl Walks {
             ));
         }
         let size = room.high - room.low;
-        if let Some(step) = plan.step().filter(|&step| step > size.max_element()) {
+        let step = kind.step();
+        if step > size.max_element() {
             return Err(PlanError::new(format!(
                 "walk.step: a step of {} is wider than the scene, which is {} by {}; give a shorter one, in the scene's unit",
                 number(step),
@@ -99,50 +158,24 @@ impl Walks {
                 number(size.y)
             )));
         }
-        let kind = match *plan {
-            WalkPlan::Uniform { step, at_walls, .. } => Kind::Uniform { step, at_walls },
-            WalkPlan::Gaussian { step, at_walls, .. } => Kind::Gaussian { step, at_walls },
-            WalkPlan::Persistent { step, turn, at_walls, .. } => Kind::Persistent { step, turn, at_walls },
-            WalkPlan::Waypoints { step, .. } => Kind::Waypoints(Box::new(Waypoints::new(&room.model, step)?)),
-            WalkPlan::Given { .. } => unreachable!("given traces were refused above"),
-        };
-        let starts = Starts::new(&room.model, start)?;
-        Ok(Walks { room, kind, starts, steps, seed })
+        let drawer = kind.drawer(&room)?;
+        let starts = Starts::new(&room.model, kind.start())?;
+        Ok(Walks { room, drawer, starts, seed })
     }
 
     /// Trace `number`, ready to be evaluated. O(steps) where walls are far, and what [`Model::is_clear`] costs near them.
     pub fn trace(&self, number: u64) -> SettledTrace {
-        let (walk, met) = self.walk(number);
-        let settled = match self.kind {
-            Kind::Waypoints(_) => settle_owned(&self.room.model, walk),
-            _ => settle_clear(&self.room.model, walk),
+        let (model, dice) = (&self.room.model, Dice { seed: self.seed, trace: number });
+        let start = self.starts.draw(model, &mut dice.of(Purpose::Start));
+        // As it is drawn, and how many of its steps met a wall or the border as they were drawn first.
+        let (points, met) = self.drawer.draw(&self.room, start, dice);
+        let walk = Trace { id: number, points };
+        let settled = match self.drawer.keeps_clear() {
+            true => settle_clear(model, walk),
+            false => settle_owned(model, walk),
         };
         let still = settled.still();
         settled.with_walked(Walked { still, met })
-    }
-
-    /// The same, as it is drawn, and how many of its steps met a wall or the border as they were drawn first.
-    fn walk(&self, number: u64) -> (Trace, usize) {
-        let model = &self.room.model;
-        let start = self.starts.draw(model, &mut Random::new(self.seed, Purpose::Start, number));
-        let mut random = Random::new(self.seed, Purpose::Walk, number);
-        let (points, met) = match self.kind {
-            Kind::Uniform { step, at_walls } => {
-                self.room.walk(at_walls, start.at(model), self.steps, Uniform { step }, &mut random)
-            }
-            Kind::Gaussian { step, at_walls } => {
-                self.room.walk(at_walls, start.at(model), self.steps, Gaussian { step }, &mut random)
-            }
-            Kind::Persistent { step, turn, at_walls } => {
-                let stride = Persistent::new(step, turn, &mut random);
-                self.room.walk(at_walls, start.at(model), self.steps, stride, &mut random)
-            }
-            Kind::Waypoints(ref waypoints) => {
-                let mut goals = Random::new(self.seed, Purpose::Goal, number);
-                (waypoints.drive(model, start, self.steps, &mut goals), 0)
-            }
-        };
-        (Trace { id: number, points }, met)
     }
 }
 

@@ -4,9 +4,16 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 use pulp::{Arch, Simd, WithSimd};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::stride::Stride;
-use crate::study::random::Random;
+use super::at_walls::AtWalls;
+use super::kind::{Dice, Draw, Kind, Stride};
+use super::room::Room;
+use super::start::{From, Start};
+use crate::geometry::number;
+use crate::study::plan_error::PlanError;
+use crate::study::random::{Purpose, Random};
 
 /// The least by which the heading may turn, in radians, once a step was drawn in vain: one that never turns would stand
 /// before a wall for good.
@@ -19,7 +26,70 @@ pub(super) const AHEAD: usize = 16;
 /// By what the turn widens with each step drawn in vain.
 pub(super) const WIDENS: f64 = 1.5;
 
-pub(super) struct Persistent {
+/// A walk that keeps its heading but for noise: the heading turns by a uniform angle in each step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PersistentWalk {
+    /// The length of a step.
+    pub step: f64,
+    /// How many steps a trace has.
+    pub steps: u32,
+    /// By how much the heading turns at most in one step, in radians.
+    #[serde(default = "default_turn")]
+    pub turn: f64,
+    /// Where traces start.
+    #[serde(default)]
+    pub start: Start,
+    /// What becomes of a step that meets a wall.
+    #[serde(default)]
+    pub at_walls: AtWalls,
+}
+
+fn default_turn() -> f64 {
+    0.4
+}
+
+impl Kind for PersistentWalk {
+    fn step(&self) -> f64 {
+        self.step
+    }
+
+    fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    fn start(&self) -> Start {
+        self.start
+    }
+
+    fn at_walls(&self) -> Option<AtWalls> {
+        Some(self.at_walls)
+    }
+
+    fn check(&self) -> Result<(), PlanError> {
+        if (0.0..=PI).contains(&self.turn) {
+            return Ok(());
+        }
+        Err(PlanError::new(format!(
+            "walk.turn: a heading cannot turn by {}; give radians, from 0 to pi ({PI})",
+            number(self.turn)
+        )))
+    }
+
+    fn drawer(&self, _: &Room) -> Result<Box<dyn Draw>, PlanError> {
+        Ok(Box::new(self.clone()))
+    }
+}
+
+impl Draw for PersistentWalk {
+    fn draw(&self, room: &Room, start: From, dice: Dice) -> (Vec<DVec2>, usize) {
+        let mut random = dice.of(Purpose::Walk);
+        let stride = Persistent::new(self.step, self.turn, &mut random);
+        room.walk(self.at_walls, start.at(&room.model), self.steps, stride, &mut random)
+    }
+}
+
+struct Persistent {
     step: f64,
     /// By how much the heading turns at most, in radians.
     turn: f64,
@@ -37,7 +107,7 @@ pub(super) struct Persistent {
 }
 
 impl Persistent {
-    pub(super) fn new(step: f64, turn: f64, random: &mut Random) -> Self {
+    fn new(step: f64, turn: f64, random: &mut Random) -> Self {
         let heading = random.direction();
         Persistent {
             step,

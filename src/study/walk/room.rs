@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::geometry::{COORDINATE_MIN, higher, lower};
+use crate::geometry::{higher, lower};
 use crate::scene::Model;
 
 pub(super) struct Room {
@@ -83,11 +83,4 @@ impl Clearing {
             *self = Clearing { reach: NEAREST, pause: PAUSE, ..Clearing::default() };
         }
     }
-}
-
-/// The point itself, but for coordinates too small to compute with exactly, which become 0; so does a negative zero.
-#[inline]
-pub(in crate::study) fn point(p: DVec2) -> DVec2 {
-    let fit = |c: f64| if c.abs() < COORDINATE_MIN { 0.0 } else { c };
-    DVec2::new(fit(p.x), fit(p.y))
 }

@@ -1,12 +1,25 @@
 //! Where traces start.
 
 use glam::DVec2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::Model;
 use crate::study::free_space::{Place, Region};
+use crate::study::plan_error::PlanError;
 use crate::study::random::Random;
-use crate::study::{PlanError, Start};
 use crate::visibility::Visibility;
+
+/// Where a trace starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Start {
+    /// At the anchor.
+    #[default]
+    Anchor,
+    /// At a point drawn uniformly over what is visible from the anchor within the scene's bounding box.
+    Visible,
+}
 
 /// What is wrong with a scene that cannot be triangulated.
 pub(super) const TOO_WIDE: &str = "the scene's coordinates cannot be triangulated: in magnitude the smallest that is not 0 \

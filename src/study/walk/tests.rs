@@ -47,9 +47,9 @@ fn scenes() -> Vec<(Arc<Model>, f64)> {
 fn walks(step: f64, steps: u32, start: Start) -> Vec<WalkPlan> {
     let at = |at_walls| {
         [
-            WalkPlan::Uniform { step, steps, start, at_walls },
-            WalkPlan::Gaussian { step, steps, start, at_walls },
-            WalkPlan::Persistent { step, steps, turn: 0.4, start, at_walls },
+            WalkPlan::Uniform(UniformWalk { step, steps, start, at_walls }),
+            WalkPlan::Gaussian(GaussianWalk { step, steps, start, at_walls }),
+            WalkPlan::Persistent(PersistentWalk { step, steps, turn: 0.4, start, at_walls }),
         ]
     };
     [AtWalls::Redraw, AtWalls::Reject, AtWalls::Reflect].into_iter().flat_map(at).collect()
@@ -94,7 +94,7 @@ fn drives_keep_to_the_rules_and_to_their_steps() {
     for (model, step) in scenes().into_iter().chain([coasts]) {
         let (low, high) = model.bounds();
         for start in STARTS {
-            let plan = WalkPlan::Waypoints { step, steps: 400, start };
+            let plan = WalkPlan::Waypoints(WaypointDrive { step, steps: 400, start });
             let walks = Walks::new(model.clone(), &plan, 11).unwrap();
             for number in 0..6 {
                 let trace = walks.trace(number);
@@ -115,7 +115,7 @@ fn drives_keep_to_the_rules_and_to_their_steps() {
 #[test]
 fn a_trace_is_found_by_its_number_alone() {
     let (model, step) = scenes().remove(0);
-    let drive = WalkPlan::Waypoints { step, steps: 50, start: Start::Visible };
+    let drive = WalkPlan::Waypoints(WaypointDrive { step, steps: 50, start: Start::Visible });
     for plan in walks(step, 50, Start::Visible).into_iter().chain([drive]) {
         let all: Vec<_> = {
             let walks = Walks::new(model.clone(), &plan, 5).unwrap();
@@ -144,8 +144,8 @@ fn steps_have_their_length_and_headings_turn_within_their_bounds() {
             let points = own_points(&Walks::new(square(half), &plan, 1).unwrap().trace(0));
             let steps: Vec<DVec2> = points.windows(2).map(|pair| pair[1] - pair[0]).collect();
             let (at_walls, turn) = match plan {
-                WalkPlan::Uniform { at_walls, .. } => (at_walls, None),
-                WalkPlan::Persistent { at_walls, turn, .. } => (at_walls, Some(turn)),
+                WalkPlan::Uniform(UniformWalk { at_walls, .. }) => (at_walls, None),
+                WalkPlan::Persistent(PersistentWalk { at_walls, turn, .. }) => (at_walls, Some(turn)),
                 _ => continue,
             };
             let has_length = |s: &&DVec2| (s.length() - 0.5).abs() < 1e-9;
@@ -166,7 +166,8 @@ fn steps_have_their_length_and_headings_turn_within_their_bounds() {
 
 #[test]
 fn gaussian_steps_have_their_moments() {
-    let plan = WalkPlan::Gaussian { step: 0.5, steps: 40_000, start: Start::Anchor, at_walls: AtWalls::Redraw };
+    let plan =
+        WalkPlan::Gaussian(GaussianWalk { step: 0.5, steps: 40_000, start: Start::Anchor, at_walls: AtWalls::Redraw });
     let points = own_points(&Walks::new(square(1e6), &plan, 1).unwrap().trace(0));
     let n = 40_000f64;
     let steps: Vec<DVec2> = points.windows(2).map(|pair| (pair[1] - pair[0]) / 0.5).collect();
@@ -185,7 +186,7 @@ fn starts_are_uniform_over_what_is_visible() {
     let hiding = [[-1.0, 1.0], [1.0, 1.0]].map(DVec2::from);
     let scene = Scene::new((0..4).map(|i| [corners[i], corners[(i + 1) % 4]]).chain([hiding])).unwrap();
     let model = Arc::new(Model::new(scene, Some(DVec2::ZERO)).unwrap());
-    let plan = WalkPlan::Uniform { step: 0.1, steps: 1, start: Start::Visible, at_walls: AtWalls::Redraw };
+    let plan = WalkPlan::Uniform(UniformWalk { step: 0.1, steps: 1, start: Start::Visible, at_walls: AtWalls::Redraw });
     let walks = Walks::new(model, &plan, 1).unwrap();
     let mut counts = [0; 4];
     for number in 0..4900 {
@@ -204,7 +205,8 @@ fn errors_say_what_would_be_right() {
     let error = |model: Arc<Model>, plan: WalkPlan| {
         Walks::new(model, &plan, 1).err().map(|e| e.to_string()).unwrap_or_default()
     };
-    let uniform = |step, steps| WalkPlan::Uniform { step, steps, start: Start::Anchor, at_walls: AtWalls::Redraw };
+    let uniform =
+        |step, steps| WalkPlan::Uniform(UniformWalk { step, steps, start: Start::Anchor, at_walls: AtWalls::Redraw });
     for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(error(square(1.0), uniform(step, 10)).contains("give a number above 0"), "{step}");
     }
@@ -212,7 +214,13 @@ fn errors_say_what_would_be_right() {
         assert!(error(square(1.0), uniform(0.1, steps)).contains("from 1 to 2147483646"), "{steps}");
     }
     for turn in [-0.1, 3.15, f64::NAN] {
-        let plan = WalkPlan::Persistent { step: 0.1, steps: 9, turn, start: Start::Anchor, at_walls: AtWalls::Redraw };
+        let plan = WalkPlan::Persistent(PersistentWalk {
+            step: 0.1,
+            steps: 9,
+            turn,
+            start: Start::Anchor,
+            at_walls: AtWalls::Redraw,
+        });
         assert!(error(square(1.0), plan).contains("from 0 to pi"), "{turn}");
     }
     let flat = Scene::new([[DVec2::ZERO, DVec2::X]]).unwrap();
@@ -221,7 +229,7 @@ fn errors_say_what_would_be_right() {
     assert!(error(square(1.0), WalkPlan::Given { file: "a.csv".into() }).contains("not drawn"));
     let wide = Scene::new([[DVec2::ZERO, DVec2::new(1e120, 1e-120)], [DVec2::Y, DVec2::X]]).unwrap();
     let wide = Arc::new(Model::new(wide, Some(DVec2::splat(2.0))).unwrap());
-    let drive = WalkPlan::Waypoints { step: 0.1, steps: 9, start: Start::Anchor };
+    let drive = WalkPlan::Waypoints(WaypointDrive { step: 0.1, steps: 9, start: Start::Anchor });
     assert!(error(wide, drive).contains("cannot be triangulated"));
 }
 
@@ -231,13 +239,19 @@ fn traces_are_those_of_other_versions() {
     let model = Arc::new(Model::new(BuiltIn::Rooms.scene(1), None).unwrap());
     let (step, steps, start) = (0.25, 300, Start::Anchor);
     let plans = [
-        (WalkPlan::Uniform { step, steps, start, at_walls: AtWalls::Redraw }, "535b71366e5512d0"),
-        (WalkPlan::Gaussian { step, steps, start, at_walls: AtWalls::Reflect }, "fe6d55280f7cd262"),
+        (WalkPlan::Uniform(UniformWalk { step, steps, start, at_walls: AtWalls::Redraw }), "535b71366e5512d0"),
+        (WalkPlan::Gaussian(GaussianWalk { step, steps, start, at_walls: AtWalls::Reflect }), "fe6d55280f7cd262"),
         (
-            WalkPlan::Persistent { step, steps, turn: 0.4, start: Start::Visible, at_walls: AtWalls::Reject },
+            WalkPlan::Persistent(PersistentWalk {
+                step,
+                steps,
+                turn: 0.4,
+                start: Start::Visible,
+                at_walls: AtWalls::Reject,
+            }),
             "190a31891113e557",
         ),
-        (WalkPlan::Waypoints { step, steps, start }, "70d78d68716207ef"),
+        (WalkPlan::Waypoints(WaypointDrive { step, steps, start }), "70d78d68716207ef"),
     ];
     for (plan, known) in plans {
         let walks = Walks::new(model.clone(), &plan, 5).unwrap();

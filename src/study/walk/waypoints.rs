@@ -3,39 +3,90 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
+use super::at_walls::AtWalls;
+use super::kind::{Dice, Draw, Kind};
 use super::paths::{Paths, Search};
-use super::room::point;
-use super::start::{From, TOO_WIDE};
-use crate::geometry::{between, orient};
+use super::room::Room;
+use super::start::{From, Start, TOO_WIDE};
+use crate::geometry::{between, orient, point};
 use crate::scene::Model;
-use crate::study::PlanError;
 use crate::study::free_space::Region;
-use crate::study::random::Random;
+use crate::study::plan_error::PlanError;
+use crate::study::random::{Purpose, Random};
 use crate::trace::{Trace, first_violation};
 use crate::visibility::Visibility;
 
 /// How many goals are drawn in vain, one after the other, before the free end stays where it is.
 pub(super) const TRIES: u32 = 64;
 
-pub(super) struct Waypoints {
+/// Drives along shortest collision-free paths from one random goal to the next.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WaypointDrive {
+    /// The length of a step along the path.
+    pub step: f64,
+    /// How many steps a trace has.
+    pub steps: u32,
+    /// Where traces start.
+    #[serde(default)]
+    pub start: Start,
+}
+
+impl Kind for WaypointDrive {
+    fn step(&self) -> f64 {
+        self.step
+    }
+
+    fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    fn start(&self) -> Start {
+        self.start
+    }
+
+    fn at_walls(&self) -> Option<AtWalls> {
+        None
+    }
+
+    fn drawer(&self, room: &Room) -> Result<Box<dyn Draw>, PlanError> {
+        Ok(Box::new(Waypoints::new(&room.model, self)?))
+    }
+}
+
+struct Waypoints {
     step: f64,
+    steps: u32,
     space: Region,
     paths: Paths,
 }
 
+impl Draw for Waypoints {
+    fn draw(&self, room: &Room, start: From, dice: Dice) -> (Vec<DVec2>, usize) {
+        (self.drive(&room.model, start, &mut dice.of(Purpose::Goal)), 0)
+    }
+
+    /// It passes wall ends.
+    fn keeps_clear(&self) -> bool {
+        false
+    }
+}
+
 impl Waypoints {
-    pub(super) fn new(model: &Arc<Model>, step: f64) -> Result<Self, PlanError> {
+    fn new(model: &Arc<Model>, plan: &WaypointDrive) -> Result<Self, PlanError> {
         let wrong = || PlanError::new(format!("walk.kind: no paths can be searched for, since {TOO_WIDE}"));
         let visibility = Visibility::new(model).ok_or_else(wrong)?;
         let space = Region::reached(model, &visibility).ok_or_else(wrong)?;
-        Ok(Waypoints { step, space, paths: Paths::new(model, visibility) })
+        Ok(Waypoints { step: plan.step, steps: plan.steps, space, paths: Paths::new(model, visibility) })
     }
 
     /// The points of a drive of `steps` steps. Goals and wall ends at which the path bends are points of it, so the step to
     /// one is shorter, and a path that follows a wall has no points between the wall's ends.
-    pub(super) fn drive(&self, model: &Model, start: From, steps: u32, goals: &mut Random) -> Vec<DVec2> {
-        let wanted = steps as usize + 1;
+    fn drive(&self, model: &Model, start: From, goals: &mut Random) -> Vec<DVec2> {
+        let wanted = self.steps as usize + 1;
         let mut points = Vec::with_capacity(wanted + 1);
         points.push(start.at(model));
         let (mut here, mut search) = (start, Search::default());

@@ -1,0 +1,236 @@
+//! A trace's rope played again from its events: step by step, moment by moment, and span by span.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use super::{Event, EventKind, Moment, Rope};
+
+/// A trace's rope on its way through the events.
+struct Replay<'a> {
+    /// The scene's.
+    vertices: &'a [DVec2],
+    events: &'a [Event],
+    /// How many of the events have happened.
+    happened: usize,
+}
+
+impl<'a> Replay<'a> {
+    fn new(vertices: &'a [DVec2], events: &'a [Event]) -> Self {
+        Replay { vertices, events, happened: 0 }
+    }
+
+    /// The event that happens next.
+    fn next(&self) -> Option<&'a Event> {
+        self.events.get(self.happened)
+    }
+
+    /// The event that happens next, if that is so up to the end of `step`.
+    fn due(&self, step: usize) -> Option<&'a Event> {
+        self.next().filter(|event| event.step as usize <= step)
+    }
+
+    /// Makes the next event happen to the rope.
+    fn play(&mut self, rope: &mut Rope) {
+        let event = &self.events[self.happened];
+        match event.kind {
+            EventKind::Wrap => rope.push(event.vertex, self.vertices[event.vertex as usize], event.side),
+            EventKind::Unwrap => {
+                let popped = rope.pop().expect("an unwrap follows a wrap");
+                assert_eq!(popped.vertex, event.vertex, "the unwrap of a contact that is not the pivot");
+            }
+        }
+        self.happened += 1;
+    }
+}
+
+/// Calls `each` with every point's number and the rope after the move to it, given a trace's `events`.
+///
+/// `vertices` are the scene's; `points` is the number of the trace's points. O(points + events).
+///
+/// # Panics
+///
+/// If the events are not a rope's: a vertex that is not there, or an unwrap of an empty rope.
+pub fn replay(anchor: DVec2, vertices: &[DVec2], points: usize, events: &[Event], mut each: impl FnMut(usize, &Rope)) {
+    let (mut rope, mut replay) = (Rope::new(anchor), Replay::new(vertices, events));
+    for k in 0..points {
+        while replay.due(k).is_some() {
+            replay.play(&mut rope);
+        }
+        each(k, &rope);
+    }
+}
+
+/// Calls `each` with every moment of a trace in order: each event, then the end of its step. `vertices` are the
+/// scene's, `points` the trace's, `events` those of its record. O(points + events).
+///
+/// # Panics
+///
+/// If the events are not a rope's: a vertex that is not there, or an unwrap of an empty rope.
+///
+/// ```
+/// use glam::DVec2;
+/// use tautline::rope::{Event, EventKind, Side, moments};
+/// let vertices = [DVec2::new(1.0, 0.0)];
+/// let points = [DVec2::new(2.0, -1.0), DVec2::new(2.0, 1.0)];
+/// let wrap = Event { step: 1, kind: EventKind::Wrap, vertex: 0, side: Side::Left };
+/// let mut places = vec![];
+/// moments(DVec2::ZERO, &vertices, &points, &[wrap], |m| places.push((m.step, m.at.y, m.rope.contacts().len())));
+/// assert_eq!(places, [(0, -1.0, 0), (1, 0.0, 1), (1, 1.0, 1)]);
+/// ```
+pub fn moments(anchor: DVec2, vertices: &[DVec2], points: &[DVec2], events: &[Event], mut each: impl FnMut(&Moment)) {
+    let (mut moment, mut replay) = (Moment::start(anchor), Replay::new(vertices, events));
+    let mut from = anchor;
+    for (k, &to) in points.iter().enumerate() {
+        moment.step = k;
+        moment.share = 0.0;
+        while let Some(event) = replay.due(k) {
+            let rope = &moment.rope;
+            let line = match event.kind {
+                EventKind::Wrap => [rope.pivot(), vertices[event.vertex as usize]],
+                EventKind::Unwrap => [rope.prior(), rope.pivot()],
+            };
+            // Rounding must not turn the order round.
+            moment.share = crossing(line, [from, to]).unwrap_or(moment.share).clamp(moment.share, 1.0);
+            moment.at = from.lerp(to, moment.share);
+            moment.event = Some(replay.happened);
+            replay.play(&mut moment.rope);
+            each(&moment);
+        }
+        (moment.share, moment.at, moment.event) = (1.0, to, None);
+        each(&moment);
+        from = to;
+    }
+}
+
+/// Which share of the way from `a` to `b` has been made where it meets the line through `o` and `p`, if it meets it
+/// once.
+fn crossing([o, p]: [DVec2; 2], [a, b]: [DVec2; 2]) -> Option<f64> {
+    let [before, after] = [a, b].map(|q| (p - o).perp_dot(q - o));
+    Some(before / (before - after)).filter(|share| share.is_finite())
+}
+
+/// What lasts over some steps of a trace.
+#[derive(Debug)]
+pub(crate) enum Lasting<'a> {
+    /// The rope has the same contacts after each of these steps.
+    Rope(&'a Rope, Range<u64>),
+    /// A contact, for so many steps: 0 where the rope bent round the same wall end before it came, and still does. It
+    /// is told of as it goes, or at the end.
+    Contact {
+        /// The number of its wall end.
+        vertex: u32,
+        /// After how many steps it is there.
+        steps: u64,
+    },
+}
+
+/// Calls `each` with each run of steps without an event, in order, and each contact. `last` is the number of the last
+/// step, `vertices` are the scene's. O(events), and contacts for those with another wall end than before.
+///
+/// # Panics
+///
+/// If the events are not a rope's: a vertex that is not there, or an unwrap of an empty rope.
+pub(crate) fn spans(anchor: DVec2, vertices: &[DVec2], last: u64, events: &[Event], mut each: impl FnMut(Lasting<'_>)) {
+    let (mut rope, mut replay) = (Rope::new(anchor), Replay::new(vertices, events));
+    // After which step each contact came; none for one whose wall end the rope had a contact with already.
+    let mut since: Vec<Option<u64>> = Vec::new();
+    let steps = |since: Option<u64>, until: u64| since.map_or(0, |since| until - since);
+    let mut start = 0;
+    while let Some(event) = replay.next() {
+        let step = u64::from(event.step);
+        if step > start {
+            each(Lasting::Rope(&rope, start..step));
+            start = step;
+        }
+        match event.kind {
+            EventKind::Wrap => {
+                // Those of a winding rope come again soon.
+                let again = rope.contacts().iter().rev().any(|contact| contact.vertex == event.vertex);
+                since.push((!again).then_some(step));
+            }
+            EventKind::Unwrap => {
+                let since = since.pop().expect("an unwrap follows a wrap");
+                each(Lasting::Contact { vertex: event.vertex, steps: steps(since, step) });
+            }
+        }
+        replay.play(&mut rope);
+    }
+    each(Lasting::Rope(&rope, start..last + 1));
+    for (contact, since) in rope.contacts().iter().zip(since) {
+        each(Lasting::Contact { vertex: contact.vertex, steps: steps(since, last + 1) });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::engine::{Engine, Job, Reference};
+    use crate::example::{Walker, floor_plan, walks};
+    use crate::scene::Model;
+    use crate::trace::{Trace, settle};
+
+    #[test]
+    fn every_step_has_the_rope_of_the_trace_that_ends_there() {
+        let model = std::sync::Arc::new(Model::new(floor_plan(), None).unwrap());
+        let mut reference = Reference::new(model.clone());
+        let mut all_events = 0;
+        // Long steps, so that one has several events.
+        for trace in walks(&model, Walker { step: 2.0, steps: 60, seed: 5 }, 12) {
+            let mut record = |n: usize| {
+                let cut = settle(&model, &Trace { id: 0, points: trace.points[..n].to_vec() });
+                reference.evaluate(&[cut], &Job::new()).unwrap().remove(0)
+            };
+            let whole = record(trace.points.len());
+            let (mut steps, mut events) = (0, 0);
+            let mut last = (0.0, model.anchor());
+            moments(model.anchor(), model.vertices(), &trace.points, &whole.events, |m| {
+                // The rope gives and takes no more than the free end moves: events happen where both ropes are one.
+                let length = m.rope.length(m.at);
+                assert!((length - last.0).abs() <= m.at.distance(last.1) + 1e-9, "step {}", m.step);
+                last = (length, m.at);
+                if m.event.is_some() {
+                    assert_eq!(m.event, Some(events));
+                    events += 1;
+                    return;
+                }
+                assert_eq!((m.step, m.at), (steps, trace.points[steps]));
+                steps += 1;
+                let cut = record(steps);
+                let taut: Vec<_> = m.rope.taut(m.at).iter().map(|c| (c.at, c.side)).collect();
+                assert_eq!((taut, length), (cut.wraps, cut.length), "step {}", m.step);
+            });
+            assert_eq!((steps, events), (trace.points.len(), whole.events.len()));
+            all_events += events;
+        }
+        assert!(all_events > 50, "{all_events}");
+    }
+
+    #[test]
+    fn spans_say_in_one_what_steps_say_one_by_one() {
+        let model = std::sync::Arc::new(Model::new(floor_plan(), None).unwrap());
+        let mut reference = Reference::new(model.clone());
+        for trace in walks(&model, Walker { step: 2.0, steps: 200, seed: 6 }, 12) {
+            let record = reference.evaluate(&[settle(&model, &trace)], &Job::new()).unwrap().remove(0);
+            let (mut ropes, mut held) = (Vec::new(), BTreeMap::new());
+            spans(model.anchor(), model.vertices(), record.steps, &record.events, |lasting| match lasting {
+                Lasting::Rope(rope, steps) => ropes.extend(steps.map(|step| (step as usize, rope.clone()))),
+                Lasting::Contact { vertex, steps } => *held.entry(vertex).or_insert(0) += steps,
+            });
+            let (mut all, mut seen) = (Vec::new(), BTreeMap::new());
+            replay(model.anchor(), model.vertices(), trace.points.len(), &record.events, |step, rope| {
+                all.push((step, rope.clone()));
+                let mut vertices: Vec<u32> = rope.contacts().iter().map(|c| c.vertex).collect();
+                vertices.sort_unstable();
+                vertices.dedup();
+                vertices.into_iter().for_each(|vertex| *seen.entry(vertex).or_insert(0) += 1);
+            });
+            assert_eq!(ropes, all);
+            // Contacts that come and go within a step last for none.
+            held.retain(|_, steps| *steps > 0);
+            assert_eq!(held, seen);
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! For how long ropes stay short.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::TallyPlan;
+use super::block::{Size, Traced};
+use super::setting::Setting;
+use super::tally::Tally;
+use super::totals::Totals;
+use crate::geometry::number;
+use crate::rope::Lasting;
+use crate::study::estimate::Estimate;
+use crate::study::plan_error::PlanError;
+
+/// At how many steps survival curves are given.
+const TIMES: u64 = 100;
+
+/// The tally of when ropes become longer than each limit.
+pub(crate) struct Limits {
+    /// The limits, ascending.
+    limits: Vec<f64>,
+    /// The steps at which survival curves are given, ascending.
+    times: Vec<u64>,
+}
+
+impl Tally for Limits {
+    type Part = Self::Counts;
+    /// For each limit: how many ropes first became longer after so many of the times had gone by. Limits that no rope
+    /// exceeded may be left out at the end.
+    type Counts = Vec<BTreeMap<u64, u64>>;
+    type Answer = Vec<Survival>;
+
+    fn check(options: &TallyPlan) -> Result<(), PlanError> {
+        match options.limits.iter().find(|l| !(l.is_finite() && **l >= 0.0)) {
+            Some(bad) => Err(PlanError::new(format!("tallies.limits: {} is no length", number(*bad)))),
+            None => Ok(()),
+        }
+    }
+
+    fn new(options: &TallyPlan, setting: &Setting) -> Result<Self, PlanError> {
+        let mut limits = options.limits.clone();
+        limits.sort_by(f64::total_cmp);
+        let mut times: Vec<u64> = match setting.steps {
+            Some(steps) => {
+                (0..=TIMES).map(|i| (u128::from(steps) * u128::from(i) / u128::from(TIMES)) as u64).collect()
+            }
+            // Nobody knows yet how long given traces are.
+            None => (0..4).chain((8..128).map(|i| (4 + i % 4) << (i / 4 - 2))).collect(),
+        };
+        times.dedup();
+        Ok(Limits { limits, times })
+    }
+
+    fn add(&self, part: &mut Self::Part, traced: &Traced<'_>) {
+        let all = self.limits.partition_point(|&limit| limit < traced.record.max_length);
+        part.resize_with(part.len().max(all), BTreeMap::new);
+        // The limits that are exceeded at some time, and the first of them that was not yet.
+        let (exceeded, mut next) = (&self.limits[..all], 0);
+        if exceeded.is_empty() {
+            return;
+        }
+        traced.spans(|lasting| {
+            let Lasting::Rope(rope, steps) = lasting else { return };
+            for step in steps {
+                if next == exceeded.len() {
+                    return;
+                }
+                let length = rope.length(traced.ends[step as usize]);
+                while next < exceeded.len() && length > exceeded[next] {
+                    let gone = self.times.partition_point(|&time| time < step) as u64;
+                    *part[next].entry(gone).or_default() += 1;
+                    next += 1;
+                }
+            }
+        });
+    }
+
+    fn finish(&self, part: Self::Part, _: &Size) -> Self::Counts {
+        part
+    }
+
+    /// For each limit the share of ropes that were never longer up to a step, or up to their trace's end if that came
+    /// before.
+    fn answer(&self, counts: &Self::Counts, totals: &Totals, setting: &Setting) -> Vec<Survival> {
+        let (traces, last) = (totals.traces.sum, totals.longest_trace);
+        let curve = |(i, &limit): (usize, &f64)| {
+            let exceeded =
+                |time: usize| counts.get(i).and_then(|times| times.get(&(time as u64))).copied().unwrap_or(0);
+            let still = |longer: u64| setting.confidence.share(traces - longer, traces);
+            let mut longer = 0;
+            let point = |(time, &step): (usize, &u64)| {
+                longer += exceeded(time);
+                SurvivalPoint { step, share: still(longer) }
+            };
+            let before = self.times.iter().enumerate().take_while(|&(_, &step)| step < last);
+            let mut curve: Vec<SurvivalPoint> = before.map(point).collect();
+            // How long given traces are is only known in the end.
+            let all = counts.get(i).map_or(0, |times| times.values().sum());
+            curve.push(SurvivalPoint { step: last, share: still(all) });
+            Survival { limit, curve }
+        };
+        // There is no curve before the first block is whole.
+        let limits = if totals.traces.blocks > 0 { &self.limits[..] } else { &[] };
+        limits.iter().enumerate().map(curve).collect()
+    }
+}
+
+/// Which share of the ropes was never longer than a limit, step by step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Survival {
+    /// The limit.
+    pub limit: f64,
+    /// At how many steps the curve is given, and what it is there: the share of traces whose rope was never longer than
+    /// the limit up to that step.
+    pub curve: Vec<SurvivalPoint>,
+}
+
+/// A point of a survival curve.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SurvivalPoint {
+    /// The step.
+    pub step: u64,
+    /// The share.
+    pub share: Estimate,
+}
