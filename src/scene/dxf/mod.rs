@@ -232,7 +232,9 @@ impl<'a> Reader<'a> {
         let label = context.label.map(short);
         self.outlines.begin(Object { label, layers: vec![short(layer)], inside });
         let from = self.outlines.len();
-        if let Some(other) = shapes::draw(entity, &mut self.outlines.pen(transform))? {
+        let pen = &mut self.outlines.pen(transform);
+        let drawn = if entity.kind == "HATCH" { hatch::draw(entity, pen) } else { shapes::draw(entity, pen) };
+        if let Some(other) = drawn? {
             self.outlines.take_back();
             return self.pass_over(other);
         }

@@ -5,7 +5,6 @@ use glam::DVec2;
 use super::super::curves::Ellipse;
 use super::super::pen::{Drawn, Pen};
 use super::entity::Entity;
-use super::hatch;
 use super::spline::beziers;
 use crate::read_error::Fault;
 
@@ -54,7 +53,6 @@ pub(super) fn draw<'a>(entity: &Entity<'a>, pen: &mut Pen<'_>) -> Result<Option<
         }
         "3DFACE" => face(entity, pen)?,
         "SPLINE" => return spline(entity, pen).map(|()| None),
-        "HATCH" => return hatch::draw(entity, pen),
         kind => return Ok(Some(kind)),
     };
     drawn.map_err(|fault| entity.fault(fault))?;
