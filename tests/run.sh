@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 # Keeps the layer in which Mesa sorts devices by window system from complaining where there is none.
 export NODEVICE_SELECT=1
 
-say() { printf '\n== %s\n' "$*"; }
+say() { printf '\n== %s (after %d s)\n' "$*" "$SECONDS"; }
 
 has_driver() {
     compgen -G '/usr/share/vulkan/icd.d/lvp_icd*.json' >/dev/null || compgen -G '/etc/vulkan/icd.d/lvp_icd*.json' >/dev/null
@@ -64,6 +64,8 @@ cargo fmt --check
 cargo fmt --check --manifest-path tests/fuzz/Cargo.toml
 say "lints"
 cargo clippy --release --all-targets --quiet -- -D warnings
+say "lints of the build without what one format or pictures alone need"
+cargo clippy --release --no-default-features --quiet -- -D warnings
 say "vector code"
 tests/vectors.sh
 say "documentation"

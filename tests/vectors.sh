@@ -1,21 +1,22 @@
 #!/usr/bin/env bash
-# Looks into the release binary: are the wide loops (src/candidates/simd.rs) really vector code for AVX2?
+# Looks into the library of the release build: are the wide loops (src/candidates/simd.rs) really vector code for AVX2?
 # A build for another processor than x86-64 has nothing to look for.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 [ "$(uname -m)" = x86_64 ] || exit 0
 
-cargo build --release --quiet --bin tautline
-binary="${CARGO_TARGET_DIR:-target}/release/tautline"
+# The binary is stripped of the names that are looked for.
+cargo build --release --quiet --lib
+library="${CARGO_TARGET_DIR:-target}/release/libtautline.rlib"
 code="$(mktemp)"
 trap 'rm -f "$code"' EXIT
-objdump --disassemble --demangle --no-show-raw-insn "$binary" |
+objdump --disassemble --demangle --no-show-raw-insn "$library" |
     awk '/^[0-9a-f]+ <.*>:$/ { wide = /pulp::.*::vectorize/ } wide' >"$code"
 
 expect() {
     if ! grep --quiet --extended-regexp "$1" "$code"; then
-        echo "$binary: no $2 in the code for AVX2: the loop was not vectorized" >&2
+        echo "$library: no $2 in the code for AVX2: the loop was not vectorized" >&2
         exit 1
     fi
     echo "found: $2"

@@ -17,7 +17,12 @@ mod histogram;
 mod label;
 mod map;
 mod page;
+mod picture_error;
 mod plane;
+#[cfg(feature = "draw-png")]
+mod raster;
+#[cfg(not(feature = "draw-png"))]
+#[path = "no_raster.rs"]
 mod raster;
 mod ropes;
 mod survival;
@@ -34,7 +39,8 @@ pub use gallery::Situation;
 pub use histogram::histogram;
 pub use map::{length_map, map};
 pub use page::page;
-pub use raster::{PictureError, png};
+pub use picture_error::PictureError;
+pub use raster::png;
 pub use ropes::ropes;
 pub use survival::survival;
 pub use tradeoff::tradeoff;

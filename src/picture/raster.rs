@@ -4,29 +4,9 @@ use std::sync::{Arc, OnceLock};
 
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::{Database, Source};
-use resvg::usvg::{self, Options, Tree};
+use resvg::usvg::{Options, Tree};
 
-/// The greatest width and height in pixels.
-const LARGEST: u32 = 16_384;
-
-/// Why there is no picture.
-#[derive(Debug, thiserror::Error)]
-pub enum PictureError {
-    /// The SVG is not one.
-    #[error("the picture cannot be read: {0}")]
-    Svg(#[from] usvg::Error),
-    /// It would have no pixels, or too many.
-    #[error("a picture of {width} x {height} pixels cannot be made: each must be from 1 to {LARGEST}")]
-    Size {
-        /// How wide.
-        width: u32,
-        /// How high.
-        height: u32,
-    },
-    /// The pixels cannot be written as PNG.
-    #[error("the picture cannot be written as PNG: {0}")]
-    Png(String),
-}
+use super::picture_error::{LARGEST, PictureError};
 
 /// An SVG as a PNG that is `width` pixels wide.
 ///
@@ -34,7 +14,7 @@ pub enum PictureError {
 ///
 /// # Errors
 ///
-/// Not an SVG, or a size that no picture can have.
+/// Not an SVG, or a size that no picture can have; in a build without the feature `draw-png`, always.
 ///
 /// ```
 /// let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2"><rect width="4" height="2"/></svg>"#;

@@ -9,6 +9,7 @@ mod format;
 mod geographic;
 mod geojson;
 mod grid;
+#[cfg(feature = "read-ros")]
 mod image;
 mod index;
 mod layers;
@@ -21,8 +22,10 @@ mod outlines;
 mod pen;
 mod pivot;
 mod read;
+#[cfg(feature = "read-ros")]
 mod ros_map;
 mod sectors;
+#[cfg(feature = "read-svg")]
 mod svg;
 mod wkt;
 

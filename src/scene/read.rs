@@ -3,12 +3,24 @@
 use std::path::Path;
 
 use super::format::SceneFormat;
-use super::{Scene, SceneOptions, dxf, geojson, layers, movingai, ros_map, svg, wkt};
+#[cfg(feature = "read-ros")]
+use super::ros_map;
+#[cfg(feature = "read-svg")]
+use super::svg;
+use super::{Scene, SceneOptions, dxf, geojson, layers, movingai, wkt};
 use crate::read_error::{ReadError, extension};
 
 /// All formats in which scenes are read.
-const FORMATS: [SceneFormat; 6] =
-    [geojson::FORMAT, wkt::FORMAT, svg::FORMAT, dxf::FORMAT, movingai::FORMAT, ros_map::FORMAT];
+const FORMATS: &[SceneFormat] = &[
+    geojson::FORMAT,
+    wkt::FORMAT,
+    #[cfg(feature = "read-svg")]
+    svg::FORMAT,
+    dxf::FORMAT,
+    movingai::FORMAT,
+    #[cfg(feature = "read-ros")]
+    ros_map::FORMAT,
+];
 
 impl SceneFormat {
     /// All formats in which scenes are read.
@@ -19,7 +31,7 @@ impl SceneFormat {
     /// assert_eq!(extensions, [".geojson", ".json", ".wkt", ".svg", ".dxf", ".map", ".yaml", ".yml"]);
     /// ```
     pub fn all() -> &'static [SceneFormat] {
-        &FORMATS
+        FORMATS
     }
 
     /// The format that a file's extension names, in whatever case.

@@ -7,7 +7,7 @@ use super::folder::Folder;
 use super::names::{PAGE, RUN_REPORT, SUMMARY};
 use super::report::{RunReport, pretty};
 use super::under_way::{Session, locked};
-use crate::picture;
+use crate::picture::{self, PictureError};
 use crate::study::{State, Stopped, Study, Summary};
 
 /// How wide the pictures are as PNG, in pixels: two for each of the SVG's units.
@@ -44,8 +44,12 @@ fn draw(folder: &Folder, summary: &Summary, study: &Study, report: &RunReport) -
     let pictures = picture::all(summary, study.models()[0].scene());
     for (name, _, svg) in &pictures {
         folder.write(&format!("{name}.svg"), svg.as_bytes())?;
-        let png = picture::png(svg, WIDTH).map_err(|error| SessionError::Picture { name: name.clone(), error })?;
-        folder.write(&format!("{name}.png"), &png)?;
+        match picture::png(svg, WIDTH) {
+            Ok(png) => folder.write(&format!("{name}.png"), &png)?,
+            // The page and the SVGs say the same.
+            Err(PictureError::Unavailable) => {}
+            Err(error) => return Err(SessionError::Picture { name: name.clone(), error }),
+        }
     }
     let shown: Vec<_> = pictures.into_iter().map(|(_, title, svg)| (title, svg)).collect();
     let report = serde_json::to_value(report)?;
