@@ -81,7 +81,8 @@ if [ "$(uname)" = Linux ]; then
     # SwiftShader compiles a kernel anew for each engine, a third of a second, so tests that make engines by the hundred, of random
     # scenes, are left to lavapipe.
     VK_DRIVER_FILES="$driver" VK_ICD_FILENAMES="$driver" TAUTLINE_TEST_ADAPTER=SwiftShader cargo test --release --test all -- \
-        arithmetic:: batch:: cli::adapters:: cli::engines:: decide:: golden:: shader:: \
+        arithmetic:: batch:: cli::adapters:: cli::engines:: decide:: shader:: \
+        engine_table::golden engine_table::what_suits engine_table::windows engine_table::forgetting engine_table::a_stopped \
         fast::a_contact fast::a_fast_engine fast::lists fast::no_trace fast::points \
         filter::devices filter::no_walk filter::without
 fi
