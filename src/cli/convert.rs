@@ -7,6 +7,7 @@ use tautline::scene::read_scene_with;
 
 use super::failure::Failure;
 use super::input::{FileArgs, note};
+use super::paths::keep_apart;
 use super::print;
 use super::summary::place;
 
@@ -23,6 +24,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    keep_apart(&[("IN", Some(&args.from))], &[("OUT", Some(&args.to))])?;
     let scene = read_scene_with(&args.from, &args.file.options())?;
     note(&args.from, &scene);
     write_scene(&args.to, &scene)?;

@@ -14,6 +14,7 @@ use tautline::trace::{SettledTrace, Trace, TraceReader, settle_owned};
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::look::{Look, Target, write};
+use super::paths::keep_apart;
 use super::print;
 
 /// How many traces, and points of them, are read at a time.
@@ -40,7 +41,10 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match (&args.gallery, &args.out) {
         (Some(folder), _) => gallery(folder),
-        (None, Some(out)) => draw(args, &Target::new(out, &args.look)?),
+        (None, Some(out)) => {
+            keep_apart(&args.input.named(), &[("--out", Some(out))])?;
+            draw(args, &Target::new(out, &args.look)?)
+        }
         (None, None) => Err(Failure::input(anyhow!("--out is missing: where the picture goes"))),
     }
 }

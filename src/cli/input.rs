@@ -13,6 +13,7 @@ use tautline::study::anchor_warnings;
 use tautline::trace::TraceReader;
 
 use super::failure::Failure;
+use super::paths::Named;
 use super::violations::{OnViolation, Violations};
 
 /// How many traces the built-in example has, and how they are walked.
@@ -123,6 +124,11 @@ impl InputArgs {
     /// The scene's name in reports.
     pub(crate) fn name(&self) -> String {
         self.scene.as_deref().map_or("the built-in floor plan".to_owned(), |p| p.display().to_string())
+    }
+
+    /// The files that are read.
+    pub(crate) fn named(&self) -> [Named<'_>; 2] {
+        [("--scene", self.scene.as_deref()), ("--traces", self.traces.as_deref())]
     }
 
     pub(crate) fn model(&self) -> Result<Model, Failure> {

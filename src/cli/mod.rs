@@ -18,6 +18,7 @@ mod interrupt;
 mod look;
 mod manual;
 mod named_scene;
+mod paths;
 mod progress;
 mod queries;
 mod spread;

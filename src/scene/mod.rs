@@ -34,6 +34,7 @@ pub use movingai::GridMap;
 pub(crate) use object::MEMBER;
 pub use object::{Inside, Object, Wall};
 pub use read::{Ros, SceneOptions, Unknown, read_scene, read_scene_with};
+pub use ros_map::image_of as map_image;
 pub(crate) use sectors::{Sectors, by_angle};
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.

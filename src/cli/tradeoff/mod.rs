@@ -22,6 +22,7 @@ use super::bench::{length, open_device};
 use super::failure::Failure;
 use super::input::{FileArgs, above_zero, point};
 use super::look::write_whole;
+use super::paths::keep_apart;
 use super::progress::Runs;
 use super::trade::stride;
 use super::{named_scene, print, print_json};
@@ -93,6 +94,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let inputs = [("--scene", Some(Path::new(&args.scene))), ("--traces", args.traces.as_deref())];
+    keep_apart(&inputs, &[("--out", args.out.as_deref())])?;
     let diagram = args.out.as_deref().map(Diagram::new).transpose()?;
     let scene = named_scene::open(&args.scene, args.anchor, &args.file)?;
     let methods = args.methods();
