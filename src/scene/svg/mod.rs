@@ -5,6 +5,7 @@
 //! read, so the tree is walked here.
 
 mod bounds;
+mod comments;
 mod css_transform;
 mod label;
 mod length;
@@ -27,6 +28,7 @@ use super::curves::Outlines;
 use super::{Object, Scene, excerpt, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
+use comments::Comments;
 use notes::Counts;
 use page::viewport_of;
 use paint::Paint;
@@ -85,7 +87,8 @@ pub(super) fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
         let what = format!("not SVG: the outermost element is <{}>, not <svg>", root.tag_name().name());
         return Err(fault_at(root, &what));
     }
-    let mut reader = Reader::new(&document, text.len());
+    let comments = Comments::of(&document);
+    let mut reader = Reader::new(&document, &comments, text.len());
     let (viewport, unit) = viewport_of(root, &reader.styles.of_element(root)).map_err(|what| fault_at(root, &what))?;
     let outer = Context { transform: DAffine2::IDENTITY, paint: Paint::default(), viewport, depth: 0, user: None };
     if let Some((context, _)) = reader.context(root, &outer)? {
@@ -138,7 +141,7 @@ struct Reader<'a, 'i> {
 }
 
 impl<'a, 'i> Reader<'a, 'i> {
-    fn new(document: &'a Document<'i>, length: usize) -> Self {
+    fn new(document: &'a Document<'i>, comments: &'a Comments<'a>, length: usize) -> Self {
         // Where two elements have one id, it is that of the first.
         let mut ids = HashMap::new();
         for node in document.descendants() {
@@ -147,7 +150,7 @@ impl<'a, 'i> Reader<'a, 'i> {
             }
         }
         Reader {
-            styles: Styles::of(document),
+            styles: Styles::of(document, comments),
             ids,
             outlines: Outlines::default(),
             layers: Vec::new(),
