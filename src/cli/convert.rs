@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::input::{FileArgs, note};
 use super::paths::keep_apart;
 use super::print;
-use super::summary::place;
+use super::summary::{place, plainly};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -37,9 +37,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let anchor = scene.anchor().map_or("no anchor".to_owned(), |a| format!("anchor {}", place(a)));
     print(&format!(
-        "{}: {} walls, {} vertices, {anchor}\n",
+        "{}: {}, {}, {anchor}\n",
         args.to.display(),
-        scene.walls().len(),
-        scene.vertices().len()
+        plainly(scene.walls().len() as u64, "wall", "walls"),
+        plainly(scene.vertices().len() as u64, "vertex", "vertices")
     ))
 }

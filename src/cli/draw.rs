@@ -26,7 +26,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     input: InputArgs,
     /// Which of the traces, by their numbers; up to six with commas between them [default: the first]
-    #[arg(long = "trace", value_name = "ID", value_delimiter = ',')]
+    #[arg(long = "trace", allow_negative_numbers = true, value_name = "ID", value_delimiter = ',')]
     wanted: Vec<u64>,
     /// The picture: .svg, .png, or .html for a page that plays the trace
     #[arg(id = "picture", long = "out", value_name = "FILE", required_unless_present = "gallery")]

@@ -43,7 +43,7 @@ pub(crate) struct InputArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct FileArgs {
     /// How far walls may lie from the curves of an .svg or .dxf, in the scene's unit [default: its longer side / 2000]
-    #[arg(long, value_name = "TOL", value_parser = above_zero)]
+    #[arg(long, allow_negative_numbers = true, value_name = "TOL", value_parser = above_zero)]
     flatten: Option<f64>,
     /// What unknown cells of a map_server's map are
     #[arg(long, value_enum, default_value = "free")]

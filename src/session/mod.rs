@@ -40,6 +40,8 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use folder::RUN_REPORT;
+
 use crate::engine::{Engine, Job};
 use crate::environment::Environment;
 use crate::rope::TraceRecord;
@@ -234,6 +236,9 @@ impl Session {
         let state = self.state();
         let traces = state.traces() - traces_before;
         let before = if traces == 0 { self.folder.run_report(&state) } else { None };
+        if traces == 0 && before.is_none() && state.kept.files.contains_key(RUN_REPORT) {
+            self.folder.note(Note::Cost { file: self.folder.file(RUN_REPORT) });
+        }
         Ok(before.unwrap_or_else(|| {
             let cost = self.cost(&state, &computed, start.elapsed(), &spent, [traces, job.steps()], engines);
             RunReport::Run(Box::new(cost))

@@ -16,7 +16,7 @@ use crate::cli::failure::Failure;
 use crate::cli::look::{Look, Target, write, write_whole};
 use crate::cli::paths::{keep_apart, place};
 use crate::cli::print;
-use crate::cli::summary::{counted, short};
+use crate::cli::summary::{counted, plainly, short};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -25,7 +25,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     base: BaseArgs,
     /// The trace's number
-    #[arg(long, value_name = "I")]
+    #[arg(long, allow_negative_numbers = true, value_name = "I")]
     trace: u64,
     /// Where to write its wraps and unwraps: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
@@ -96,10 +96,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         write_whole(path, rows(args.trace, &study.whole_trace(args.trace)?.ends()).as_bytes())?;
     }
     print(&format!(
-        "trace {}: {} steps, {} events, rope length {} at the end, greatest {}, depth {} at the end\n",
+        "trace {}: {}, {}, rope length {} at the end, greatest {}, depth {} at the end\n",
         args.trace,
-        record.steps,
-        record.events.len(),
+        plainly(record.steps, "step", "steps"),
+        plainly(record.events.len() as u64, "event", "events"),
         short(record.length),
         short(record.max_length),
         record.depth

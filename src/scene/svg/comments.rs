@@ -24,8 +24,8 @@ impl<'a> Comments<'a> {
     }
 }
 
-/// `text` with a space for each comment outside strings and addresses; in selectors, where spaces mean something, nothing.
-/// O(length).
+/// `text` with a space for each comment outside strings and addresses; in selectors, where spaces
+/// mean something, nothing. O(length).
 fn without(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     // The spaces that stand for comments since the last mark.
