@@ -10,7 +10,8 @@ use super::failure::Failure;
 /// A file, if it is given, and how the command line calls it.
 pub(crate) type Named<'a> = (&'a str, Option<&'a Path>);
 
-/// Refuses outputs that are the same file as an input, or as an output before them. The image that a map names is an input too.
+/// Refuses outputs that are the same file as an input, or as an output before them. The image that a map
+/// names is an input too.
 pub(crate) fn keep_apart(inputs: &[Named<'_>], outputs: &[Named<'_>]) -> Result<(), Failure> {
     let given = |(name, path): &Named<'_>| path.map(|path| ((*name).to_owned(), path.to_owned()));
     let image = |(name, path): &Named<'_>| Some((format!("the image of {name}"), map_image((*path)?)?));
