@@ -15,6 +15,7 @@ use tautline::trade::Terms;
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::look::{Look, Target, save};
+use super::paths::keep_apart;
 use super::words::{counted, dropped, place};
 use super::{print, print_json};
 
@@ -37,6 +38,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    keep_apart(&args.input.named(), &[("--picture", args.picture.as_deref())])?;
     let look = Look::of_scene();
     let target = args.picture.as_deref().map(|path| Target::new(path, &look)).transpose()?;
     let is_page =

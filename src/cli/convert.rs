@@ -7,8 +7,9 @@ use tautline::scene::{SceneFormat, alternatives, read_scene_with};
 
 use super::failure::Failure;
 use super::input::{FileArgs, note};
+use super::paths::keep_apart;
 use super::print;
-use super::words::place;
+use super::words::{place, plainly};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -31,6 +32,7 @@ fn scenes_written() -> String {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    keep_apart(&[("IN", Some(&args.from))], &[("OUT", Some(&args.to))])?;
     let scene = read_scene_with(&args.from, &args.file.options())?;
     note(&args.from, &scene);
     write_scene(&args.to, &scene)?;
@@ -40,9 +42,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let anchor = scene.anchor().map_or("no anchor".to_owned(), |a| format!("anchor {}", place(a)));
     print(&format!(
-        "{}: {} walls, {} vertices, {anchor}\n",
+        "{}: {}, {}, {anchor}\n",
         args.to.display(),
-        scene.walls().len(),
-        scene.vertices().len()
+        plainly(scene.walls().len() as u64, "wall", "walls"),
+        plainly(scene.vertices().len() as u64, "vertex", "vertices")
     ))
 }

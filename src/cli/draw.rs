@@ -15,6 +15,7 @@ use tautline::trace::{SettledTrace, Trace, TraceReader, settle_owned};
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::look::{Look, Target, write};
+use super::paths::keep_apart;
 use super::print;
 
 /// How many traces, and points of them, are read at a time.
@@ -26,7 +27,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     input: InputArgs,
     /// Which of the traces, by their numbers; up to six with commas between them [default: the first]
-    #[arg(long = "trace", value_name = "ID", value_delimiter = ',')]
+    #[arg(long = "trace", allow_negative_numbers = true, value_name = "ID", value_delimiter = ',')]
     wanted: Vec<u64>,
     /// The picture: .svg, .png, or .html for a page that plays the trace
     #[arg(id = "picture", long = "out", value_name = "FILE", required_unless_present = "gallery")]
@@ -41,7 +42,10 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match (&args.gallery, &args.out) {
         (Some(folder), _) => gallery(folder),
-        (None, Some(out)) => draw(args, &Target::new(out, &args.look)?),
+        (None, Some(out)) => {
+            keep_apart(&args.input.named(), &[("--out", Some(out))])?;
+            draw(args, &Target::new(out, &args.look)?)
+        }
         (None, None) => Err(Failure::input(anyhow!("--out is missing: where the picture goes"))),
     }
 }

@@ -1,9 +1,8 @@
 //! `tautline eval`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
-use anyhow::anyhow;
 use tautline::engine::{Engine, Job, Precision};
 use tautline::output::check_output;
 use tautline::stream::{Batches, Files, Stage, evaluate};
@@ -12,6 +11,7 @@ use tautline::trade::Terms;
 use super::engine::EngineArgs;
 use super::failure::Failure;
 use super::input::InputArgs;
+use super::paths::keep_apart;
 use super::progress::{Progress, with_progress};
 use super::summary::Summary;
 use super::trade::TradeArgs;
@@ -98,28 +98,8 @@ fn notes(terms: &Terms, engine: &dyn Engine) -> Vec<(&'static str, String)> {
 /// Refuses outputs that cannot be written, and those that would replace another file of this run.
 fn check_outputs(args: &Args) -> Result<(), Failure> {
     [&args.out, &args.events].into_iter().flatten().try_for_each(|path| check_output(path))?;
-    let files = [
-        ("--scene", &args.input.scene),
-        ("--traces", &args.input.traces),
-        ("--queries", &args.queries),
-        ("--out", &args.out),
-        ("--events", &args.events),
-    ];
-    for (i, (output, path)) in files.iter().enumerate().skip(3) {
-        let Some(path) = path else { continue };
-        let same = |other: &&(_, &Option<PathBuf>)| other.1.as_deref().is_some_and(|o| place(o) == place(path));
-        if let Some((other, _)) = files[..i].iter().find(same) {
-            return Err(Failure::input(anyhow!("{other} and {output} name the same file, {}", path.display())));
-        }
-    }
-    Ok(())
-}
-
-/// The path without links and detours, so that equal places have equal paths; the file need not be there yet.
-fn place(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-        path.file_name().map_or(folder.clone(), |name| folder.join(name))
-    })
+    let [out, events] = [&args.out, &args.events].map(Option::as_deref);
+    let [scene, traces] = args.input.named();
+    let inputs = [scene, traces, ("--queries", args.queries.as_deref())];
+    keep_apart(&inputs, &[("--out", out), ("--events", events)])
 }

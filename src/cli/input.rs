@@ -15,6 +15,7 @@ use tautline::trace::TraceReader;
 
 use super::failure::Failure;
 use super::parse::{above_zero, point};
+use super::paths::Named;
 use super::violations::{OnViolation, Violations};
 
 /// How many traces the built-in example has, and how they are walked.
@@ -43,7 +44,7 @@ pub(crate) struct InputArgs {
 #[derive(Debug, clap::Args)]
 pub(crate) struct FileArgs {
     /// How far walls may lie from the curves of an .svg or .dxf, in the scene's unit [default: its longer side / 2000]
-    #[arg(long, value_name = "TOL", value_parser = above_zero)]
+    #[arg(long, allow_negative_numbers = true, value_name = "TOL", value_parser = above_zero)]
     flatten: Option<f64>,
     /// What unknown cells of a map_server's map are
     #[arg(long, value_enum, default_value = "free")]
@@ -111,6 +112,11 @@ impl InputArgs {
     /// The scene's name in reports.
     pub(crate) fn name(&self) -> String {
         self.scene.as_deref().map_or("the built-in floor plan".to_owned(), |p| p.display().to_string())
+    }
+
+    /// The files that are read.
+    pub(crate) fn named(&self) -> [Named<'_>; 2] {
+        [("--scene", self.scene.as_deref()), ("--traces", self.traces.as_deref())]
     }
 
     pub(crate) fn model(&self) -> Result<Model, Failure> {

@@ -17,7 +17,7 @@ use super::print;
 #[group(id = "look", multiple = true, requires = "picture")]
 pub(crate) struct Look {
     /// Show the moment after step K, the move from point K-1 to point K [default: the last]
-    #[arg(long, value_name = "K")]
+    #[arg(long, allow_negative_numbers = true, value_name = "K")]
     pub step: Option<usize>,
     /// A filmstrip: a small picture for each wrap and unwrap, of events FROM to TO [default: 1-24]
     #[arg(long, value_name = "FROM-TO", num_args = 0..=1, value_parser = frames,
@@ -31,13 +31,13 @@ pub(crate) struct Look {
         default_value = "near")]
     pub view: Part,
     /// The most rays of the pivot: those nearest to the free end [default: 12, with --frames 0]
-    #[arg(long, value_name = "N")]
+    #[arg(long, allow_negative_numbers = true, value_name = "N")]
     pub rays: Option<usize>,
     /// The ground: `auto` is as the reader's system has it, in .png light
     #[arg(long, value_enum, default_value = "auto")]
     pub theme: ThemeArg,
     /// How many pixels wide a .png is [default: 1440]
-    #[arg(long, value_name = "PIXELS")]
+    #[arg(long, allow_negative_numbers = true, value_name = "PIXELS")]
     pub width: Option<u32>,
 }
 

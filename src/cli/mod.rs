@@ -19,6 +19,7 @@ mod look;
 mod manual;
 mod named_scene;
 mod parse;
+mod paths;
 mod progress;
 mod queries;
 mod spread;

@@ -44,7 +44,12 @@ pub(crate) fn usage(other: &clap::Error) -> ExitCode {
     if obeyed && other.use_stderr() {
         say!("{}", other.render().to_string().trim_end());
     } else {
-        let _ = other.print();
+        if let (Err(cause), false) = (other.print(), other.use_stderr())
+            && cause.kind() != std::io::ErrorKind::BrokenPipe
+        {
+            say!("error: {cause}");
+            return ExitCode::from(1);
+        }
     }
     ExitCode::from(other.exit_code() as u8)
 }

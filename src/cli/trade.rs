@@ -13,10 +13,10 @@ use super::words::{counted, grouped};
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub(crate) struct TradeArgs {
     /// Go straight from every K-th point of a trace to the next, where no wall is in the way; ropes can be wrong
-    #[arg(long, value_name = "K", value_parser = stride)]
+    #[arg(long, allow_negative_numbers = true, value_name = "K", value_parser = stride)]
     pub stride: Option<u32>,
     /// Leave wall ends out where walls move by at most TOL, in the scene's unit, and no way between them changes
-    #[arg(long, value_name = "TOL", value_parser = above_zero)]
+    #[arg(long, allow_negative_numbers = true, value_name = "TOL", value_parser = above_zero)]
     pub simplify: Option<f64>,
 }
 

@@ -26,6 +26,11 @@ pub(super) fn counted(count: u64, one: &str, several: &str) -> String {
     format!("{} {}", grouped(count), if count == 1 { one } else { several })
 }
 
+/// The same with plain digits.
+pub(super) fn plainly(count: u64, one: &str, several: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
+}
+
 /// What is said of walls that were dropped.
 pub(super) fn dropped(walls: usize) -> String {
     counted(walls as u64, "wall of zero length was dropped", "walls of zero length were dropped")

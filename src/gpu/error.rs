@@ -45,6 +45,6 @@ fn offer(found: &[AdapterSummary]) -> String {
     if found.is_empty() {
         return "none".to_owned();
     }
-    let lines: Vec<String> = found.iter().map(|adapter| format!("{}: {adapter}", adapter.number)).collect();
+    let lines: Vec<String> = found.iter().map(|adapter| format!("number {}, {adapter}", adapter.number)).collect();
     lines.join("; ")
 }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::escape::escaped_lines;
+
 /// An SVG document that is being written. Pixels count from the top left.
 ///
 /// A `style` is a list of attributes as they stand in the file; it is always one of our own, never text from outside.
@@ -175,6 +177,8 @@ pub(super) fn escape(text: &str) -> String {
             '\'' => out.push_str("&#39;"),
             '\u{FFFE}' | '\u{FFFF}' => out.push('\u{FFFD}'),
             c if c < ' ' && !matches!(c, '\t' | '\n' | '\r') => out.push('\u{FFFD}'),
+            // What turns the direction of writing, and more, as terminals are shown it.
+            c if c >= '\u{7f}' => out.push_str(&escaped_lines(c.encode_utf8(&mut [0; 4]))),
             c => out.push(c),
         }
     }
@@ -193,6 +197,7 @@ mod tests {
 
     #[test]
     fn text_cannot_leave_its_place() {
+        assert_eq!(escape("a\u{9b}\u{7f}\u{202e}b"), r"a\u{9b}\u{7f}\u{202e}b");
         assert_eq!(escape("a<b>&\"c'\u{1}"), "a&lt;b&gt;&amp;&quot;c&#39;\u{FFFD}");
     }
 }

@@ -43,7 +43,7 @@ pub(crate) use object::MEMBER;
 pub use object::{Inside, Object, Wall};
 pub use options::{Ros, SceneOptions, Unknown};
 pub use pivot::Pivot;
-pub use read::{read_scene, read_scene_with};
+pub use read::{map_image, read_scene, read_scene_with};
 pub(crate) use sectors::{Sectors, by_angle};
 
 /// Walls and their ends. Coordinates are planar f64 in the user's own unit and frame.

@@ -1,6 +1,6 @@
 //! Reads a scene from a file, in the format that its extension names.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::format::SceneFormat;
 #[cfg(feature = "read-ros")]
@@ -77,6 +77,19 @@ pub fn read_scene_with(path: &Path, options: &SceneOptions) -> Result<Scene, Rea
         return Err(ReadError::Extension { path: path.into(), what: "scenes", extensions });
     };
     layers::choose((format.read)(path, options)?, options).map_err(|fault| fault.in_file(path))
+}
+
+/// The image that a map of ROS's `map_server` names; `None` of other files, of maps that cannot be read, and in a build
+/// without the feature `read-ros`.
+#[cfg(feature = "read-ros")]
+pub fn map_image(path: &Path) -> Option<PathBuf> {
+    ros_map::image_of(path)
+}
+
+/// `None`: this build reads no such maps.
+#[cfg(not(feature = "read-ros"))]
+pub fn map_image(_: &Path) -> Option<PathBuf> {
+    None
 }
 
 #[cfg(test)]

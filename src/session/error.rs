@@ -270,6 +270,11 @@ pub enum Note {
         /// The folder.
         folder: PathBuf,
     },
+    /// What was said of the run before is gone or damaged, and written anew.
+    Cost {
+        /// The file.
+        file: PathBuf,
+    },
     /// Rows that were kept are gone or damaged.
     Again {
         /// Where they were.
@@ -291,6 +296,9 @@ impl fmt::Display for Note {
                 write!(f, "{} holds {done} of {all} traces of this study already", folder.display())
             }
             Note::Answered { folder } => write!(f, "{} holds the answer of this study already", folder.display()),
+            Note::Cost { file } => {
+                write!(f, "{}: gone or damaged; what is written now says nothing of the runs before", file.display())
+            }
             Note::Again { file, fault } => write!(f, "{}: {fault}; its rows are computed again", file.display()),
         }
     }

@@ -168,7 +168,7 @@ impl Folder {
     /// How far a study is whose folder this is.
     pub(super) fn state(&self, study: &Study) -> Result<State, SessionError> {
         State::load(&self.file(STATE), study).map_err(|error| {
-            let can_begin_again = !error.is_foreign() && error.path.exists();
+            let can_begin_again = error.is_useless();
             SessionError::State { error, folder: can_begin_again.then(|| self.path.clone()) }
         })
     }

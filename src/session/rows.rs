@@ -64,7 +64,8 @@ impl Rows {
         for entry in fs::read_dir(&parts).map_err(failed)? {
             let file = entry.map_err(failed)?.path();
             if !known.contains(&file) {
-                fs::remove_file(file).map_err(failed)?;
+                let action = Action::Remove;
+                fs::remove_file(&file).map_err(|cause| SessionError::Rows { action, path: file, cause })?;
             }
         }
         let scene = study.models()[0].scene().clone();

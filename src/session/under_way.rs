@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::error::{Note, SessionError};
 use super::folder::Folder;
-use super::names::TRACES;
+use super::names::{RUN_REPORT, TRACES};
 use super::report::{Computed, RunCost, RunReport, SpentSeconds, Tried, provenance};
 use super::rows::{self, Rows};
 use crate::engine::{Engine, Job};
@@ -197,6 +197,9 @@ impl Session {
         let state = self.state();
         let traces = state.traces() - traces_before;
         let before = if traces == 0 { self.folder.run_report(&state) } else { None };
+        if traces == 0 && before.is_none() && state.kept.files.contains_key(RUN_REPORT) {
+            self.folder.note(Note::Cost { file: self.folder.file(RUN_REPORT) });
+        }
         Ok(before.unwrap_or_else(|| {
             let cost = self.cost(&state, &computed, start.elapsed(), &spent, [traces, job.steps()], engines);
             RunReport::Run(Box::new(cost))

@@ -28,6 +28,8 @@ pub struct Study {
     given_models: Vec<Arc<Model>>,
     /// For each anchor; none if the traces are given.
     walks: Vec<Walks>,
+    /// The file of the scene.
+    file: Option<PathBuf>,
     /// The file of given traces.
     given: Option<PathBuf>,
     identity: String,
@@ -67,12 +69,18 @@ impl Study {
             plan.run.trade().simplified(&models).map_err(|e| PlanError::new(format!("run.simplify: {e}")))?;
         let setting = Setting::new(&plan.tallies, simplified, bounds, plan.walk.steps());
         let tallies = Tallies::new(&plan.tallies, setting)?;
-        Ok(Study { plan, tallies, given_models: models, walks, given, identity })
+        let file = plan.scene.file.as_ref().map(|file| folder.join(file));
+        Ok(Study { plan, tallies, given_models: models, walks, file, given, identity })
     }
 
     /// The plan.
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// The files of its scene and of its traces, where it names them.
+    pub fn files(&self) -> [Option<&Path>; 2] {
+        [self.file.as_deref(), self.given.as_deref()]
     }
 
     /// The scene with each of its anchors, as ropes see it: simplified if the plan says so. Trace i has anchor i modulo their

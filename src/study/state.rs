@@ -163,12 +163,19 @@ pub struct StateError {
     pub path: PathBuf,
     /// What is wrong with it.
     pub what: String,
+    /// Whether it could not even be read, so that nothing is known of it.
+    pub is_unread: bool,
 }
 
 impl StateError {
     /// Whether the state belongs to another study.
     pub fn is_foreign(&self) -> bool {
         self.what == FOREIGN
+    }
+
+    /// Whether the file was read and is damaged or another's, so that nothing is lost with it.
+    pub fn is_useless(&self) -> bool {
+        !self.is_unread && !self.is_foreign()
     }
 }
 
@@ -242,8 +249,8 @@ impl State {
     ///
     /// A file that is no state, was written by another version, is damaged, or belongs to another study.
     pub fn load(path: &Path, study: &Study) -> Result<Self, StateError> {
-        let fault = |what: &str| StateError { path: path.to_owned(), what: what.to_owned() };
-        let bytes = fs::read(path).map_err(|e| fault(&e.to_string()))?;
+        let fault = |what: &str| StateError { path: path.to_owned(), what: what.to_owned(), is_unread: false };
+        let bytes = fs::read(path).map_err(|e| StateError { is_unread: true, ..fault(&e.to_string()) })?;
         let Some(rest) = bytes.strip_prefix(first_line().as_slice()) else {
             let kin = bytes.starts_with(MAGIC.as_bytes());
             return Err(fault(if kin {
@@ -278,7 +285,7 @@ impl State {
 /// Shards that belong to another study, are not all there, are there twice, or are not done; and none at all.
 pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, StateError> {
     shards.sort_by_key(|(_, state)| state.shard);
-    let fault = |path: &Path, what: String| Err(StateError { path: path.to_owned(), what });
+    let fault = |path: &Path, what: String| Err(StateError { path: path.to_owned(), what, is_unread: false });
     let mut whole = State::new(study, Shard::WHOLE);
     let blocks = study.plan().blocks();
     let Some(of) = shards.first().map(|(_, state)| state.shard.of) else {

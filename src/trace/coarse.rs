@@ -49,7 +49,8 @@ impl SettledTrace {
             i += 1;
             added.next_if_eq(&(i - 1)).is_none()
         });
-        let mut coarse = Coarse::default();
+        let mut coarse =
+            Coarse { still: points.windows(2).filter(|pair| pair[0] == pair[1]).count(), ..Coarse::default() };
         if k > 1 && points.len() > 1 {
             thin(model, &mut points, k, &mut coarse);
         }

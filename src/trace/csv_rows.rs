@@ -80,7 +80,8 @@ impl Header {
                 false if semicolon => "; the fields are separated by semicolons here: write commas, and 1.5, not 1,5",
                 false => "",
             };
-            return Err(format!("{width} fields; the header has {}{why}", self.width));
+            let fields = if width == 1 { "field" } else { "fields" };
+            return Err(format!("{width} {fields}; the header has {}{why}", self.width));
         }
         let [trace, x, y, step] = texts;
         let whole = |text, column| number(text, column, "a whole number from 0", |t| t.parse().ok());

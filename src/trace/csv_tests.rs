@@ -114,7 +114,7 @@ fn faults_name_line_column_and_text() {
         ),
         (
             "0;1;2\n",
-            "line 2: 1 fields; the header has 3; the fields are separated by semicolons here: write commas, and 1.5, \
+            "line 2: 1 field; the header has 3; the fields are separated by semicolons here: write commas, and 1.5, \
              not 1,5"
                 .into(),
         ),

@@ -111,6 +111,8 @@ pub(crate) struct Walked {
 pub(super) struct Coarse {
     /// The numbers of the steps that the trace's own points end, ascending; empty if all are there.
     pub used: Vec<u32>,
+    /// How many steps of the trace as given leave the free end where it is.
+    pub still: usize,
     /// How many longer steps were walked as given, since a wall is in their way.
     pub jumps: usize,
     /// How many steps break the rules among the walls that it was coarsened among.
@@ -151,8 +153,12 @@ impl SettledTrace {
         self.walked
     }
 
-    /// How many of its steps leave the free end where it is. O(steps).
+    /// How many of its steps leave the free end where it is; of a [coarsened](Self::coarsened) one those of the trace as given.
+    /// O(steps).
     pub fn still(&self) -> usize {
+        if self.is_thinned() {
+            return self.coarse.still;
+        }
         self.ends().windows(2).filter(|pair| pair[0] == pair[1]).count()
     }
 

@@ -31,23 +31,31 @@ pub(crate) struct Args {
     file: FileArgs,
     /// The length of a step, about, in the scene's unit [default: 0.01 in random-M, 0.1 in lattice-M, 0.25 in rooms, a
     /// tenth of the mean distance between walls in files]
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, allow_negative_numbers = true, value_name = "LENGTH", value_parser = length)]
     step: Option<f64>,
     /// How many traces there are
-    #[arg(long, alias = "traces", value_name = "N", default_value = "2000",
-        value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(
+        long, allow_negative_numbers = true, alias = "traces", value_name = "N", default_value = "2000",
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
     count: u32,
     /// How many steps a trace has
-    #[arg(long, value_name = "N", default_value = "1000", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(
+        long, allow_negative_numbers = true, value_name = "N", default_value = "1000",
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
     steps: u32,
     /// Decides where random walls lie and walks lead
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", default_value = "1")]
     seed: u64,
     /// How often every engine runs
-    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(
+        long, allow_negative_numbers = true, value_name = "N", default_value = "5",
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
     repeats: u32,
     /// About how long one run may take, in seconds; engines that need longer run on part of the work
-    #[arg(long, value_name = "TIME", default_value = "1", value_parser = length)]
+    #[arg(long, allow_negative_numbers = true, value_name = "TIME", default_value = "1", value_parser = length)]
     seconds: f64,
     /// Only this engine; may be given several times
     #[arg(long, value_name = "ENGINE", value_parser = measured(CONTENDERS.map(|c| c.engine)))]
@@ -56,7 +64,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// The most steps that one query covers
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     window: Option<u32>,
     /// Measure over a range of values: vertices, traces at once, lengths of a step, or widest windows
     #[arg(long, value_enum)]

@@ -14,8 +14,9 @@ use tautline::session::look;
 use super::BaseArgs;
 use crate::cli::failure::Failure;
 use crate::cli::look::{Look, Target, write, write_whole};
+use crate::cli::paths::{keep_apart, place};
 use crate::cli::print;
-use crate::cli::words::{counted, short};
+use crate::cli::words::{counted, plainly, short};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -24,7 +25,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     base: BaseArgs,
     /// The trace's number
-    #[arg(long, value_name = "I")]
+    #[arg(long, allow_negative_numbers = true, value_name = "I")]
     trace: u64,
     /// Where to write its wraps and unwraps: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
@@ -62,18 +63,18 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             args.trace
         )));
     }
-    for (option, path) in [("--events", &args.events), ("--points", &args.points), ("--draw", &args.draw)] {
-        let own = |path: &std::path::Path| {
-            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-            path.exists() && folder.unwrap_or(".".as_ref()).canonicalize().ok() == args.folder.canonicalize().ok()
-        };
-        if let Some(path) = path.as_deref().filter(|path| own(path)) {
+    let [events, points, draw] = [&args.events, &args.points, &args.draw].map(Option::as_deref);
+    let outputs = [("--events", events), ("--points", points), ("--draw", draw)];
+    for (option, path) in outputs {
+        if let Some(path) = path.filter(|path| place(path).starts_with(place(&args.folder))) {
             let shown = path.display();
             return Err(Failure::input(anyhow!(
-                "{option}: {shown} is one of the study's own files; give another name"
+                "{option}: {shown} is in the study's folder, which is its own; write to a place outside it"
             )));
         }
     }
+    let [scene, given] = study.files();
+    keep_apart(&[("the study's scene.file", scene), ("the study's walk.file", given)], &outputs)?;
     let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
     [&args.events, &args.points].into_iter().flatten().try_for_each(|path| check_output(path))?;
     let target = args.draw.as_deref().map(|path| Target::new(path, &args.look)).transpose()?;
@@ -95,10 +96,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         write_whole(path, rows(args.trace, &study.whole_trace(args.trace)?.ends()).as_bytes())?;
     }
     print(&format!(
-        "trace {}: {} steps, {} events, rope length {} at the end, greatest {}, depth {} at the end\n",
+        "trace {}: {}, {}, rope length {} at the end, greatest {}, depth {} at the end\n",
         args.trace,
-        record.steps,
-        record.events.len(),
+        plainly(record.steps, "step", "steps"),
+        plainly(record.events.len() as u64, "event", "events"),
         short(record.length),
         short(record.max_length),
         record.depth

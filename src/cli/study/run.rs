@@ -17,6 +17,7 @@ use crate::cli::interrupt::{Guard, Last};
 use crate::cli::progress::{Progress, with_progress};
 use crate::cli::summary::precision;
 use crate::cli::trade::TradeArgs;
+use crate::cli::words::plainly;
 use crate::cli::{print, print_json};
 
 #[derive(Debug, clap::Args)]
@@ -28,10 +29,13 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// How many traces, instead of what the file says
-    #[arg(long, alias = "traces", value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(
+        long, allow_negative_numbers = true, alias = "traces", value_name = "N",
+        value_parser = clap::value_parser!(u64).range(1..)
+    )]
     count: Option<u64>,
     /// The seed, instead of the file's
-    #[arg(long, value_name = "S")]
+    #[arg(long, allow_negative_numbers = true, value_name = "S")]
     seed: Option<u64>,
     /// Do only every N-th block, from the K-th on, counted from 0; `study merge` puts the shards together
     #[arg(long, value_name = "K/N", default_value = "0/1", hide_default_value = true)]
@@ -165,6 +169,7 @@ fn proceed(
     let (progress, job) = (Progress::new(if left.steps > 0 { left.traces } else { 0 }), Job::new());
     progress.begin(left.traces, left.steps);
     let report = with_progress(&progress, &job, || session.run(&mut engines, &job))?;
+    tell(session.folder());
     conclude(&session, &report, as_json)
 }
 
@@ -249,10 +254,10 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
         Err(RunError::Plan(error)) => return Err(error.into()),
     }
     let mut text = format!(
-        "the study is sound: {} traces in {} blocks, {} walls, anchors: {}, engine {name} ({precision}) on {on}\n",
-        plan.run.count(),
-        plan.blocks(),
-        study.models()[0].scene().walls().len(),
+        "the study is sound: {} in {}, {}, anchors: {}, engine {name} ({precision}) on {on}\n",
+        plainly(plan.run.count(), "trace", "traces"),
+        plainly(plan.blocks(), "block", "blocks"),
+        plainly(study.models()[0].scene().walls().len() as u64, "wall", "walls"),
         study.models().len(),
     );
     if let Some((traces, took)) = first.filter(|&(traces, _)| traces > 0) {

@@ -12,7 +12,7 @@ use super::run::print_answer;
 use crate::cli::failure::Failure;
 use crate::cli::print;
 use crate::cli::trade;
-use crate::cli::words::{grouped, short};
+use crate::cli::words::{counted, grouped, short};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -48,8 +48,10 @@ pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
         Stopped::Seconds => "the time was over",
         Stopped::Unfinished => "not finished",
     };
-    let [traces, steps, events] = [summary.traces, summary.steps, summary.events].map(grouped);
-    line(format_args!("{traces} traces, {steps} steps, {events} events; {why}"));
+    let traces = counted(summary.traces, "trace", "traces");
+    let steps = counted(summary.steps, "step", "steps");
+    let events = counted(summary.events, "event", "events");
+    line(format_args!("{traces}, {steps}, {events}; {why}"));
     if let Some(words) = standing(summary) {
         line(format_args!("{words}"));
     }

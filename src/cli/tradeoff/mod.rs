@@ -24,6 +24,7 @@ use super::failure::Failure;
 use super::input::FileArgs;
 use super::look::write_whole;
 use super::parse::{above_zero, point, stride};
+use super::paths::keep_apart;
 use super::progress::Runs;
 use super::{named_scene, print, print_json};
 
@@ -56,22 +57,22 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     traces: Option<PathBuf>,
     /// How many random walks there are without traces [default: 10000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     count: Option<u32>,
     /// How many steps a random walk has [default: 500]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     steps: Option<u32>,
     /// The length of a step of random walks, about, in the scene's unit [default: as of `tautline bench`]
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, allow_negative_numbers = true, value_name = "LENGTH", value_parser = length)]
     step: Option<f64>,
     /// Decides where random walls lie and walks lead [default: 1]
-    #[arg(long, value_name = "N")]
+    #[arg(long, allow_negative_numbers = true, value_name = "N")]
     seed: Option<u64>,
     /// Use every K-th point of a trace; several with commas between them [default: 2,4,8,16]
-    #[arg(long, value_name = "K", value_delimiter = ',', value_parser = stride)]
+    #[arg(long, allow_negative_numbers = true, value_name = "K", value_delimiter = ',', value_parser = stride)]
     stride: Option<Vec<u32>>,
     /// Simplify walls by at most TOL; several with commas between them [default: half, 2 and 8 steps]
-    #[arg(long, value_name = "TOL", value_delimiter = ',', value_parser = above_zero)]
+    #[arg(long, allow_negative_numbers = true, value_name = "TOL", value_delimiter = ',', value_parser = above_zero)]
     simplify: Option<Vec<f64>>,
     /// Only this engine's methods; may be given several times
     #[arg(long, value_name = "ENGINE", value_parser = measured(Method::ALL.map(|m| m.engine())))]
@@ -80,10 +81,13 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
     /// How often every method runs at every setting
-    #[arg(long, value_name = "N", default_value = "3", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(
+        long, allow_negative_numbers = true, value_name = "N", default_value = "3",
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
     repeats: u32,
     /// About how long one run may take, in seconds; what takes longer runs on the first traces, one at least
-    #[arg(long, value_name = "TIME", default_value = "1", value_parser = length)]
+    #[arg(long, allow_negative_numbers = true, value_name = "TIME", default_value = "1", value_parser = length)]
     seconds: f64,
     /// Where to draw the diagram: .svg or .png
     #[arg(long, value_name = "FILE")]
@@ -94,6 +98,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let inputs = [("--scene", Some(Path::new(&args.scene))), ("--traces", args.traces.as_deref())];
+    keep_apart(&inputs, &[("--out", args.out.as_deref())])?;
     let diagram = args.out.as_deref().map(Diagram::new).transpose()?;
     let scene = named_scene::open(&args.scene, args.anchor, &args.file)?;
     let methods = args.methods();

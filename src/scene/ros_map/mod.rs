@@ -4,7 +4,7 @@ mod cell;
 mod map;
 mod yaml;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 
@@ -73,6 +73,13 @@ fn read(path: &Path, ros: Ros, unknown: Unknown) -> Result<Scene, ReadError> {
         scene.note(format!("{which}, so there are no walls; {}", map.rule(ros)));
     }
     Ok(scene)
+}
+
+/// The image that a map of ROS's `map_server` names; `None` of other files, and of maps that cannot be read.
+pub(super) fn image_of(path: &Path) -> Option<PathBuf> {
+    let is_map = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("yaml") || e.eq_ignore_ascii_case("yml"));
+    let map = is_map.then(|| parse(&read_text(path, SETTINGS_MAX).ok()?).ok())??;
+    Some(path.parent().unwrap_or(Path::new("")).join(map.image))
 }
 
 /// How many cells are what.

@@ -64,6 +64,52 @@ fn what_is_not_painted_is_no_wall() {
 }
 
 #[test]
+fn comments_of_styles_are_spaces() {
+    for style in [
+        "style='display:none/*x*/'",
+        "style='display:/**/none'",
+        "style='display/*y*/:none'",
+        "style='/**/display:none/**/!/**/important'",
+        "display='none/*x*/'",
+        "class='a'",
+        "class='b'",
+    ] {
+        let sheet = "<style>.a{display:/**/none/*x*/} .b/* { */{ /* } */ display/*y*/:none }</style>";
+        assert_eq!(walls(&format!("{sheet}<path d='M0,0h1' {style}/>")).len(), 0, "{style}");
+    }
+    let moved = "<path d='M0,0h1' style='transform:/**/translate(/**/5px)/**/'/>";
+    assert_eq!(walls(moved), [[5., 0., 6., 0.]]);
+    for (kind, shown) in [("text/less", 1), ("text/css", 0), ("Text/CSS", 0), ("", 0)] {
+        let drawn = format!("<style type='{kind}'>path{{display:none}}</style><path d='M0,0h1'/>");
+        assert_eq!(walls(&drawn).len(), shown, "{kind}");
+        let told = notes(&drawn).iter().any(|note| note.contains("passed over: 1 (type=\"text/less\")"));
+        assert_eq!(told, shown == 1, "{kind}");
+    }
+}
+
+#[test]
+fn what_is_initial_is_not_inherited() {
+    for (round, own, shown) in [
+        ("fill='none'", "fill='initial'", 1),
+        ("fill='none'", "fill='unset'", 0),
+        ("fill='none'", "fill='inherit'", 0),
+        ("fill='none'", "style='fill:INITIAL'", 1),
+        ("fill='none' stroke='red'", "stroke='initial'", 0),
+        ("fill-opacity='0'", "fill-opacity='initial'", 1),
+        ("fill='none' stroke='red' stroke-width='0'", "stroke-width='initial'", 1),
+        ("visibility='hidden'", "visibility='initial'", 1),
+        ("visibility='hidden'", "style='visibility:initial'", 1),
+        ("visibility='hidden'", "visibility='unset'", 0),
+        ("visibility='hidden'", "style='visibility:inherit'", 0),
+        ("opacity='0'", "opacity='initial'", 0),
+        ("display='none'", "display='initial'", 0),
+    ] {
+        let drawn = format!("<g {round}><path d='M0,0h1' {own}/></g>");
+        assert_eq!(walls(&drawn).len(), shown, "{round} {own}");
+    }
+}
+
+#[test]
 fn filled_outlines_are_solid() {
     let inside = |element: &str| {
         let scene = scene(element).unwrap();

@@ -5,6 +5,7 @@
 //! cannot read, so the tree is walked here.
 
 mod bounds;
+mod comments;
 mod css_transform;
 mod label;
 mod length;
@@ -31,6 +32,7 @@ use super::{Object, Scene, excerpt, nearly_anchor};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
 use crate::read_file::{SCENE_MAX, read_text};
+use comments::Comments;
 use namespaces::{INKSCAPE, SVG};
 use notes::Counts;
 use page::viewport_of;
@@ -94,7 +96,8 @@ fn parse(text: &str, flatten: Option<f64>) -> Result<Scene, Fault> {
         let what = format!("not SVG: the outermost element is <{}>, not <svg>", root.tag_name().name());
         return Err(fault_at(root, &what));
     }
-    let mut reader = Reader::new(&document, text.len());
+    let comments = Comments::of(&document);
+    let mut reader = Reader::new(&document, &comments, text.len());
     let (viewport, unit) = viewport_of(root, &reader.styles.of_element(root)).map_err(|what| fault_at(root, &what))?;
     let outer = Context { transform: DAffine2::IDENTITY, paint: Paint::default(), viewport, depth: 0, user: None };
     if let Some((context, _)) = reader.context(root, &outer)? {
@@ -147,7 +150,7 @@ struct Reader<'a, 'i> {
 }
 
 impl<'a, 'i> Reader<'a, 'i> {
-    fn new(document: &'a Document<'i>, length: usize) -> Self {
+    fn new(document: &'a Document<'i>, comments: &'a Comments<'a>, length: usize) -> Self {
         // Where two elements have one id, it is that of the first.
         let mut ids = HashMap::new();
         for node in document.descendants() {
@@ -156,7 +159,7 @@ impl<'a, 'i> Reader<'a, 'i> {
             }
         }
         Reader {
-            styles: Styles::of(document),
+            styles: Styles::of(document, comments),
             ids,
             outlines: Outlines::default(),
             layers: Vec::new(),

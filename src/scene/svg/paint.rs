@@ -59,6 +59,7 @@ impl Paint {
         known: impl Fn(&str) -> bool,
     ) -> (Self, Vec<String>) {
         let mut unread = Vec::new();
+        self.begin(style);
         let said = |name: &str| style.get(name).filter(|value| !value.is(&["inherit"]));
         let mut not = |name: &str, value: Value<'_>| unread.push(format!("{name}: {}", value.text));
         for (name, ink) in [("fill", &mut self.fill), ("stroke", &mut self.stroke)] {
@@ -103,6 +104,28 @@ impl Paint {
             _ => {}
         }
         (self, unread)
+    }
+
+    /// Takes back what is inherited where the style says so.
+    fn begin(&mut self, style: &Style<'_>) {
+        let initial = |name| style.is_initial(name);
+        let usual = Paint::default();
+        if initial("fill") {
+            self.fill = usual.fill;
+        }
+        if initial("stroke") {
+            self.stroke = Ink::None;
+        }
+        self.fill_opaque |= initial("fill-opacity");
+        self.stroke_opaque |= initial("stroke-opacity");
+        self.even_odd &= !initial("fill-rule");
+        self.visible |= initial("visibility");
+        if initial("stroke-width") {
+            self.stroke_width = usual.stroke_width;
+        }
+        for (marker, name) in self.markers.iter_mut().zip(["marker-start", "marker-mid", "marker-end"]) {
+            *marker &= !initial(name);
+        }
     }
 
     fn fills(&self) -> bool {

@@ -180,7 +180,8 @@ mod tests {
 
     fn walls(element: &str) -> Result<Vec<[f64; 4]>, String> {
         let document = Document::parse(element).unwrap();
-        let style = Styles::of(&document).of_element(document.root_element());
+        let comments = Default::default();
+        let style = Styles::of(&document, &comments).of_element(document.root_element());
         let mut outlines = Outlines::default();
         let viewport = Some(DVec2::new(200.0, 100.0));
         let shape = Shape { node: document.root_element(), style: &style, viewport };

@@ -99,6 +99,10 @@ fn nested<'a>(mut text: &'a str, rules: &mut Vec<Rule<'a>>, unread: &mut Unread,
                 if declarations.is_empty() {
                     continue;
                 }
+                if pieces(head, ',').any(|selector| is_broken(selector.trim())) {
+                    unread.add(head.trim());
+                    continue;
+                }
                 for selector in pieces(head, ',') {
                     match Selector::parse(selector.trim()) {
                         Some(selector) => rules.push(Rule { selector, declarations: Rc::clone(&declarations) }),
@@ -109,6 +113,18 @@ fn nested<'a>(mut text: &'a str, rules: &mut Vec<Rule<'a>>, unread: &mut Unread,
             (None, None) => unread.add(head),
         }
     }
+}
+
+/// Whether this is no selector of any kind, so that nobody heeds the rule.
+fn is_broken(selector: &str) -> bool {
+    let combines = ['>', '+', '~'];
+    let is_name = |c: char| c.is_alphanumeric() || "-_\\".contains(c) || !c.is_ascii();
+    let plain = selector.split(['[', '(', '"', '\'']).next().unwrap_or_default();
+    let mut marks = plain.match_indices(['.', '#', ':']).map(|(at, _)| &plain[at + 1..]);
+    selector.is_empty()
+        || selector.starts_with(combines)
+        || selector.ends_with(combines)
+        || marks.any(|rest| !rest.starts_with(|c: char| is_name(c) || c == ':'))
 }
 
 /// The declarations of `text` that matter, in order.
@@ -214,6 +230,10 @@ mod tests {
         assert_eq!(note.as_deref(), Some(expected));
         for broken in ["a", "{", "}", "a{", "@", "@media", "a{r", "a{r:", "/*", "'", "a{}}b{r:1px}", "\\"] {
             read(broken);
+        }
+        for (list, names) in [(".b,,", ".b,,"), (".b,", ".b,"), ("a >, b", "a >, b"), ("a, .", "a, .")] {
+            let note = format!("styles that are not understood and passed over: 1 ({names})");
+            assert_eq!(read(&format!("{list}{{r:1px}}")), (Vec::new(), Some(note)), "{list}");
         }
     }
 }

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use roxmltree::{Document, Node};
 use simplecss::{AttributeOperator, Element, PseudoClass};
 
+use super::comments::Comments;
 use super::namespaces::SVG;
 use super::properties::PROPERTIES;
 use super::sheet::{self, Rule, Unread};
@@ -35,6 +36,11 @@ impl<'a> Style<'a> {
         (!value.is(&["initial", "unset", "revert", "revert-layer"])).then_some(value)
     }
 
+    /// Whether the element says that an inherited property is as if nothing round the element said anything.
+    pub(super) fn is_initial(&self, name: &str) -> bool {
+        self.0.iter().any(|(property, value)| *property == name && value.is(&["initial"]))
+    }
+
     /// The word for a property, in small letters; none if nothing is said.
     pub(super) fn word(&self, name: &str) -> String {
         self.get(name).map(|value| value.text.to_ascii_lowercase()).unwrap_or_default()
@@ -54,6 +60,7 @@ impl<'a> Style<'a> {
 /// The rules of all style sheets in a document that say anything that matters, the more specific ones last.
 pub(super) struct Styles<'a> {
     rules: Vec<Rule<'a>>,
+    comments: &'a Comments<'a>,
     pub(super) unread: Unread,
     /// How many looks at elements are left for finding out which rules match.
     left: Cell<u64>,
@@ -66,14 +73,20 @@ const LOOKS_MAX: u64 = 1 << 26;
 const BYTES_A_LOOK: usize = 64;
 
 impl<'a> Styles<'a> {
-    pub(super) fn of(document: &'a Document<'_>) -> Self {
-        let mut styles = Styles { rules: Vec::new(), unread: Unread::default(), left: Cell::new(LOOKS_MAX) };
+    pub(super) fn of(document: &'a Document<'_>, comments: &'a Comments<'a>) -> Self {
+        let (rules, unread, left) = (Vec::new(), Unread::default(), Cell::new(LOOKS_MAX));
+        let mut styles = Styles { rules, comments, unread, left };
         // Drawings without a namespace have style sheets too.
         let of_svg = |node: &Node<'_, '_>| matches!(node.tag_name().namespace(), None | Some(SVG));
         for node in document.descendants().filter(|n| n.tag_name().name() == "style" && of_svg(n)) {
+            let kind = node.attribute("type").map_or("", str::trim);
+            if !kind.is_empty() && !kind.eq_ignore_ascii_case("text/css") {
+                styles.unread.add(&format!("type=\"{kind}\""));
+                continue;
+            }
             match node.attribute("media").map(str::trim) {
                 None | Some("" | "all" | "screen") => {
-                    let texts = node.children().filter_map(|n| n.text());
+                    let texts = node.children().filter_map(|n| n.text()).map(|text| comments.strip(text));
                     texts.for_each(|text| sheet::parse(text, &mut styles.rules, &mut styles.unread));
                 }
                 Some(media) => styles.unread.add(&format!("media=\"{media}\"")),
@@ -98,12 +111,13 @@ impl<'a> Styles<'a> {
         let mut style = Style::default();
         for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
             if let Some((name, _)) = PROPERTIES.iter().find(|(name, presents)| *presents && *name == attribute.name()) {
-                style.set(name, Value { text: attribute.value().trim(), css: false });
+                style.set(name, Value { text: self.comments.strip(attribute.value()).trim(), css: false });
             }
         }
         let matching = self.rules.iter().filter(|rule| rule.selector.matches(&Styled(node, &self.left)));
         let matching: Vec<_> = matching.map(|rule| Rc::clone(&rule.declarations)).collect();
-        let inline: Vec<_> = sheet::declarations(node.attribute("style").unwrap_or_default()).collect();
+        let inline = node.attribute("style").unwrap_or_default();
+        let inline: Vec<_> = sheet::declarations(self.comments.strip(inline)).collect();
         // What is important comes last and so wins.
         for important in [false, true] {
             let all = matching.iter().flat_map(|declarations| declarations.iter()).chain(&inline);
@@ -174,7 +188,8 @@ mod tests {
             <l class="moved" transform="scale(2)"/><m style="marker:none" marker-end="url(#m)"/>
             <n style="r:unset" r="1"/></svg>"##;
         let document = Document::parse(text).unwrap();
-        let styles = Styles::of(&document);
+        let comments = Comments::of(&document);
+        let styles = Styles::of(&document, &comments);
         let said = |name: &str| {
             let node = document.descendants().find(|n| n.tag_name().name() == name).unwrap();
             let style = styles.of_element(node);

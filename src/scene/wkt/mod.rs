@@ -27,6 +27,18 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     read: |path, _| parse(&read_text(path, SCENE_MAX)?).map_err(|fault| fault.in_file(path)),
 };
 
+/// What to do about a third number where the geometry does not announce it.
+fn third_number(geometry: &str) -> &'static str {
+    let head = geometry.split('(').next().unwrap_or_default();
+    let is_announced = head.split_whitespace().count() > 1 || head.trim_end().ends_with(['Z', 'z', 'M', 'm']);
+    let is_there = geometry.split(['(', ',', ')']).skip(1).any(|point| point.split_whitespace().count() == 3);
+    if is_there && !is_announced {
+        "; a third number of a point needs a Z, as in LINESTRING Z (0 0 1, 1 0 2)"
+    } else {
+        ""
+    }
+}
+
 /// Reads geometries one after the other, each with or without `SRID=...;` before it.
 ///
 /// LINESTRING, MULTILINESTRING, POLYGON and MULTIPOLYGON give one wall for each pair of consecutive positions. A POINT
@@ -48,8 +60,10 @@ fn parse(text: &str) -> Result<Scene, Fault> {
             };
             return Err(Fault::new(Place::line(line), what));
         }
-        let geometry = Wkt::<f64>::from_str(&with_signs(statement.geometry))
-            .map_err(|e| Fault::new(place.clone(), format!("not WKT: {e}: {:?}", excerpt(statement.geometry))))?;
+        let geometry = Wkt::<f64>::from_str(&with_signs(statement.geometry)).map_err(|e| {
+            let (shown, third) = (excerpt(statement.geometry), third_number(statement.geometry));
+            Fault::new(place.clone(), format!("not WKT: {e}: {shown:?}{third}"))
+        })?;
         found.geometry(&geometry, &place)?;
         found.geographic |= matches!(statement.srid, Some(4326 | 4258 | 4269));
         found.projected |= statement.srid.is_some_and(|srid| srid != 0) && !found.geographic;
@@ -283,7 +297,7 @@ mod tests {
             ("NaN (0 0, 1 1)", "line 1: not WKT: "),
             ("LINESTRING (0 0, 1 1) x", "line 1: not WKT: "),
             ("LINESTRING (0 0, 1 1))", "line 1: not WKT: "),
-            ("LINESTRING (0 0 0, 1 1 1)", "line 1: not WKT: "),
+            ("LINESTRING (0 0 0, 1 1 1)", "needs a Z, as in LINESTRING Z"),
             ("LINESTRING (0,0 1,1)", "line 1: not WKT: "),
             ("\nLINESTRING (0 0, 1 1", "line 2: the file ends inside of this geometry; open parentheses: 1"),
             ("CIRCULARSTRING (0 0, 1 1, 2 0)", "line 1: not WKT: Invalid type"),

@@ -67,7 +67,7 @@ fn two_adapters_of_one_name_are_told_apart() {
         done.stderr
     );
     // Of two, there is no third.
-    run("2").has_failed(3, "number 2", &["\"2\"", &format!("0: {name}"), &format!("1: {name}")]);
+    run("2").has_failed(3, "number 2", &["\"2\"", &format!("number 0, {name}"), &format!("number 1, {name}")]);
 }
 
 #[test]

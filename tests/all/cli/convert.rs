@@ -23,7 +23,7 @@ fn a_drawing_becomes_geojson_and_well_known_text() {
     // A finer drawing has more walls, and a file without an anchor none.
     assert!(folder.done("convert p.svg p.json --flatten 0.001").stdout.starts_with("p.json: 104 walls"));
     folder.write("m.map", "type octile\nheight 1\nwidth 2\nmap\n.@\n");
-    assert_eq!(folder.done("convert m.map m.wkt").stdout, "m.wkt: 1 walls, 2 vertices, no anchor\n");
+    assert_eq!(folder.done("convert m.map m.wkt").stdout, "m.wkt: 1 wall, 2 vertices, no anchor\n");
     assert_eq!(folder.text("m.wkt"), "LINESTRING (1.0 0.0, 1.0 1.0)\n");
 }
 

@@ -10,6 +10,7 @@ mod engines;
 mod extremes;
 mod faults;
 mod newcomer;
+mod outputs;
 mod process;
 mod queries;
 mod reports;
