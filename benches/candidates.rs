@@ -1,5 +1,5 @@
-//! The candidate pass over all vertices, on the CPU and as one round of the GPU: `cargo bench --bench candidates`. Rates are
-//! in queries.
+//! The candidate pass over all vertices, on the CPU and as one round of the GPU: `cargo bench --bench candidates`.
+//! Rates are in queries.
 
 use std::sync::Arc;
 use std::sync::LazyLock;

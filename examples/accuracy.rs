@@ -2,8 +2,8 @@
 //!
 //!     cargo run --release --example accuracy
 //!
-//! Everything between `<!-- NAME -->` and `<!-- end -->` in that file is replaced. Takes some minutes; the times are worth
-//! something only if nothing else runs meanwhile.
+//! Everything between `<!-- NAME -->` and `<!-- end -->` in that file is replaced. Takes some minutes; the times are
+//! worth something only if nothing else runs meanwhile.
 
 use std::error::Error;
 use std::fmt::Write;

@@ -55,8 +55,8 @@ fn names(is_hidden: fn(&EngineKind) -> bool) -> impl TypedValueParser<Value = En
     PossibleValuesParser::new([auto].into_iter().chain(named)).map(|name| EngineName(EngineKind::named(&name)))
 }
 
-/// The engines that an answer can be computed with: those that count the same events. The others are not offered; given all
-/// the same, they are [refused](super::study) with the reason.
+/// The engines that an answer can be computed with: those that count the same events. The others are not offered; given
+/// all the same, they are [refused](super::study) with the reason.
 pub(super) fn of_studies(arg: clap::Arg) -> clap::Arg {
     arg.value_parser(names(|kind| !kind.counts_events()))
 }
@@ -84,7 +84,8 @@ impl EngineArgs {
         })
     }
 
-    /// Opens the engine asked for, and tells in words what it runs on; says on stderr what was chosen where there was a choice.
+    /// Opens the engine asked for, and tells in words what it runs on; says on stderr what was chosen where there was a
+    /// choice.
     pub(crate) fn open(&self, model: &Arc<Model>) -> Result<(Box<dyn Engine>, String), Failure> {
         let opened = self.open_for(self.precision().unwrap_or_default(), model)?;
         Ok((opened.engine, opened.on.to_string()))
@@ -98,7 +99,8 @@ impl EngineArgs {
         }
         if !kind.takes(precision) {
             return Err(Failure::input(anyhow!(
-                "precision fast is one of the engine gpu: give --engine gpu or auto with it, or take precision certified"
+                "precision fast is one of the engine gpu: give --engine gpu or auto with it, or take precision \
+                 certified"
             )));
         }
         Ok(())
@@ -155,8 +157,8 @@ pub(super) fn notes(choice: &AdapterChoice, device: &Device) -> Vec<String> {
         AdapterChoice::Named(words) if !device.passed_over().is_empty() => {
             let others: Vec<String> = device.passed_over().iter().map(|a| format!("{}: {a}", a.number)).collect();
             notes.push(format!(
-                "note: {words:?} is in the names of other adapters too; this is number {}, and --adapter with its number takes \
-                 {}",
+                "note: {words:?} is in the names of other adapters too; this is number {}, and --adapter with its \
+                 number takes {}",
                 taken.number,
                 others.join("; ")
             ));

@@ -116,8 +116,8 @@ struct Lane<'e> {
     scratch: Scratch,
     /// The candidates of the current window.
     found: Vec<u32>,
-    /// The lists used last, by pivot: ropes come back to the pivots from which they came, and what a thread has at hand it
-    /// need not ask the others for.
+    /// The lists used last, by pivot: ropes come back to the pivots from which they came, and what a thread has at hand
+    /// it need not ask the others for.
     recent: [Option<(Pivot, Arc<List>)>; RECENT],
 }
 

@@ -1,14 +1,13 @@
 //! What every engine does.
 
-use std::convert::Infallible;
-use std::error::Error;
-
-use super::{Job, Precision};
-use crate::gpu::GpuError;
+use super::error::EngineError;
+use super::job::Job;
+use super::precision::Precision;
 use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
 
-/// How many traces engines without a device can make use of at once: enough that all threads end at about the same time.
+/// How many traces engines without a device can make use of at once: enough that all threads end at about the same
+/// time.
 const BATCH: usize = 8192;
 
 /// Turns batches of independent traces into records, for the model that the engine was made for.
@@ -30,14 +29,14 @@ pub trait Engine: Send {
     /// [`EngineError::Stopped`] when the job was stopped, and whatever can go wrong with the engine's device.
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError>;
 
-    /// How many traces, at the most, it can make use of in one evaluation: with fewer it may be slower, with more it is no
-    /// faster.
+    /// How many traces, at the most, it can make use of in one evaluation: with fewer it may be slower, with more it is
+    /// no faster.
     fn batch(&self) -> usize {
         BATCH
     }
 
-    /// How many of the model's vertices it tries, that is, at how many a rope can turn within reach of the traces evaluated so
-    /// far; all with `keep_all`. `None` for engines that do not ask, or have not yet. See
+    /// How many of the model's vertices it tries, that is, at how many a rope can turn within reach of the traces
+    /// evaluated so far; all with `keep_all`. `None` for engines that do not ask, or have not yet. See
     /// [`Visibility::only_required`](crate::visibility::Visibility::only_required).
     fn remaining(&self) -> Option<usize> {
         None
@@ -45,44 +44,4 @@ pub trait Engine: Send {
 
     /// Forgets what was made of the model on the way, so that the next evaluation makes it anew: for measurements.
     fn forget(&mut self) {}
-}
-
-/// Why an engine cannot be opened, or gave no result.
-#[derive(Debug, thiserror::Error)]
-pub enum EngineError {
-    /// The job was stopped before it was done.
-    #[error("stopped before all traces were evaluated")]
-    Stopped,
-    /// The engine cannot take this scene.
-    #[error("the engine {engine} cannot take this scene: {why}")]
-    Unfit {
-        /// Which engine.
-        engine: &'static str,
-        /// What it cannot take.
-        #[source]
-        why: Box<dyn Error + Send + Sync>,
-    },
-    /// It runs on a GPU, and was given none.
-    #[error("the engine {engine} runs on a GPU, and there is none")]
-    NoDevice {
-        /// Which engine.
-        engine: &'static str,
-    },
-    /// It cannot be had in this precision.
-    #[error("the engine {engine} has no precision {}", precision.name())]
-    Precision {
-        /// Which engine.
-        engine: &'static str,
-        /// In which precision.
-        precision: Precision,
-    },
-    /// The GPU failed, or exact ropes cannot rely on it.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-}
-
-impl From<Infallible> for EngineError {
-    fn from(never: Infallible) -> Self {
-        match never {}
-    }
 }

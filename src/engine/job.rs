@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use super::EngineError;
+use super::error::EngineError;
 
 /// A part of an evaluation's work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,14 +62,14 @@ impl Job {
         self.steps.load(Ordering::Relaxed)
     }
 
-    /// How many vertices have been tried in all, by the candidate pass or, in engines without one, by the update; a look
-    /// through a triangle of the scene's triangulation tries one. Engines that try no vertices report 0.
+    /// How many vertices have been tried in all, by the candidate pass or, in engines without one, by the update; a
+    /// look through a triangle of the scene's triangulation tries one. Engines that try no vertices report 0.
     pub fn tests(&self) -> u64 {
         self.tests.load(Ordering::Relaxed)
     }
 
-    /// The time spent in a phase, summed over threads; zero unless the job is [timed](Self::timed) and the engine has the
-    /// phase.
+    /// The time spent in a phase, summed over threads; zero unless the job is [timed](Self::timed) and the engine has
+    /// the phase.
     pub fn phase(&self, phase: Phase) -> Duration {
         Duration::from_nanos(self.nanoseconds[phase as usize].load(Ordering::Relaxed))
     }

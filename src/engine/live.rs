@@ -12,8 +12,8 @@ use crate::trace::{Trace, settle};
 
 /// A rope that follows its free end, one straight move at a time.
 ///
-/// The events and ropes are those of a trace of the same points that starts at the anchor. A move that touches a wall is
-/// refused: on which side it passes would depend on the next one.
+/// The events and ropes are those of a trace of the same points that starts at the anchor. A move that touches a wall
+/// is refused: on which side it passes would depend on the next one.
 ///
 /// ```
 /// use tautline::engine::LiveRope;
@@ -80,8 +80,8 @@ pub enum AdvanceError {
 }
 
 impl LiveRope {
-    /// A rope whose free end is at the model's anchor. O(n log n) for n wall ends: what each pivot sees is found with the help
-    /// of a triangulation.
+    /// A rope whose free end is at the model's anchor. O(n log n) for n wall ends: what each pivot sees is found with
+    /// the help of a triangulation.
     pub fn new(model: Arc<Model>) -> Self {
         let lists = Lists::new(model).after(0);
         // Made now rather than in the first move.
@@ -90,13 +90,14 @@ impl LiveRope {
         LiveRope { lists, rope: Rope::new(anchor), at: TracePoint::from(anchor), events: Vec::new() }
     }
 
-    /// Moves the free end straight to `to` and returns what happened to the rope, in order. O(vertices that the pivot sees
-    /// within reach of the move) for each event and once more; the list of those is made when a pivot comes up first.
+    /// Moves the free end straight to `to` and returns what happened to the rope, in order. O(vertices that the pivot
+    /// sees within reach of the move) for each event and once more; the list of those is made when a pivot comes up
+    /// first.
     ///
     /// # Errors
     ///
-    /// [`AdvanceError`]: a move that touches a wall, and a coordinate that is not finite, too large or too small. Nothing has
-    /// happened then.
+    /// [`AdvanceError`]: a move that touches a wall, and a coordinate that is not finite, too large or too small.
+    /// Nothing has happened then.
     pub fn advance(&mut self, to: DVec2) -> Result<&[LiveEvent], AdvanceError> {
         let (model, from) = (self.lists.model(), self.at.at);
         check_point(to).map_err(|fault| AdvanceError::Coordinate { to, fault })?;

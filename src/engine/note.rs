@@ -1,6 +1,6 @@
 //! The seed note's listing 1, as written: the baseline that is measured against. Plain f64, at most one event a step,
-//! the first crossing in list order. It is wrong on collinear walls, on several wraps in one step, and on rounding; it is
-//! kept to be measured, not to be used. So is the note's remedy for walls on one line.
+//! the first crossing in list order. It is wrong on collinear walls, on several wraps in one step, and on rounding; it
+//! is kept to be measured, not to be used. So is the note's remedy for walls on one line.
 
 use std::sync::Arc;
 
@@ -23,8 +23,8 @@ pub static NOTE: EngineKind = EngineKind {
     open: Open::Thread(|model| Box::new(Note::new(model))),
 };
 
-/// The listing multiplies by `Inf`; an infinite factor makes NaN of a difference of zero, so it must be read as a number
-/// that is large enough.
+/// The listing multiplies by `Inf`; an infinite factor makes NaN of a difference of zero, so it must be read as a
+/// number that is large enough.
 const INF: f64 = 1e9;
 
 /// Listing 1 of the note. O(obstacle points) a step, on one thread.
@@ -40,8 +40,8 @@ impl Note {
         Note { model, furthest: false }
     }
 
-    /// The same with what the note says of walls on one line: of all the rays that a step crosses, the one whose source is
-    /// furthest from the pivot is taken, not the first in the list.
+    /// The same with what the note says of walls on one line: of all the rays that a step crosses, the one whose source
+    /// is furthest from the pivot is taken, not the first in the list.
     #[must_use]
     pub fn furthest(mut self) -> Self {
         self.furthest = true;

@@ -54,8 +54,8 @@ impl Progress {
         self.at + 1 >= trace.points().len()
     }
 
-    /// The next event on the leg from point `at`, applied to the rope; `None`, and on to the next point, when the leg has
-    /// no more.
+    /// The next event on the leg from point `at`, applied to the rope; `None`, and on to the next point, when the leg
+    /// has no more.
     #[inline]
     pub(super) fn next(
         &mut self,
@@ -65,8 +65,8 @@ impl Progress {
     ) -> Option<EventKind> {
         let leg = Leg { a0: trace.point(self.at), a1: trace.point(self.at + 1) };
         let event = match self.wraps_left {
-            // A leg wraps no vertex twice. Only where a trace goes through walls can a rope turn more than half way round
-            // a wall's end, and then the update may find no end.
+            // A leg wraps no vertex twice. Only where a trace goes through walls can a rope turn more than half way
+            // round a wall's end, and then the update may find no end.
             0 => {
                 assert!(trace.breaks_rules(), "a leg that keeps to the rules wraps no vertex twice");
                 None

@@ -1,13 +1,15 @@
-//! What the table of engines says of each, and how engines are opened by it.
+//! What the table of engines says of each, and how one is opened by it.
 
 use std::sync::Arc;
 use std::{fmt, ptr};
 
-use super::{CPU, ENGINES, Engine, EngineError, GPU, Precision, WINDOW};
-use crate::gpu::{AdapterChoice, Device, GpuError};
+use super::windows::WINDOW;
+use super::{Engine, EngineError, Precision};
+use crate::gpu::{Device, GpuError};
 use crate::scene::Model;
 
-/// An engine, as the table has it. There is one of each, in [`ENGINES`]; two are equal if they are the same one.
+/// An engine, as the table has it. There is one of each, in [`ENGINES`](super::ENGINES); two are equal if they are the
+/// same one.
 pub struct EngineKind {
     /// Its name, as the command line knows it.
     pub name: &'static str,
@@ -15,8 +17,8 @@ pub struct EngineKind {
     pub about: &'static str,
     /// In which precisions it can be opened; none for one whose ropes are wrong by design.
     pub precisions: &'static [Precision],
-    /// Whether it asks queries, so that [`Options::window`] and [`Options::keep_all`] change how it works. What it certifies
-    /// depends on neither.
+    /// Whether it asks queries, so that [`Options::window`] and [`Options::keep_all`] change how it works. What it
+    /// certifies depends on neither.
     pub asks: bool,
     /// What it promises where f32 does not decide alone.
     pub(super) promise: Promise,
@@ -101,11 +103,6 @@ pub enum Why {
 }
 
 impl EngineKind {
-    /// The engine called `name`.
-    pub fn named(name: &str) -> Option<&'static EngineKind> {
-        ENGINES.into_iter().find(|kind| kind.name == name)
-    }
-
     /// What it promises in a precision.
     pub fn promise(&self, precision: Precision) -> Promise {
         match precision {
@@ -114,8 +111,8 @@ impl EngineKind {
         }
     }
 
-    /// Whether it finds the events that the update has, contacts passed straight among them, and that well or badly: studies
-    /// count events, and an answer does not tell what computed it.
+    /// Whether it finds the events that the update has, contacts passed straight among them, and that well or badly:
+    /// studies count events, and an answer does not tell what computed it.
     pub fn counts_events(&self) -> bool {
         self.promise == Promise::Events
     }
@@ -174,23 +171,6 @@ impl EngineKind {
             (Open::Thread(make), _) => (make(model), RunsOn::Thread),
         };
         Ok(Opened { engine, kind: self, on, why: Why::Asked })
-    }
-}
-
-/// Opens the engine that suits the machine: `gpu` on a real GPU, else `cpu`. What `cpu` cannot do, `gpu` does on the best
-/// adapter that there is.
-///
-/// # Errors
-///
-/// As [`EngineKind::open`], only with a precision that `cpu` has not.
-pub fn open_best(model: Arc<Model>, options: &Options) -> Result<Opened, EngineError> {
-    let gpu = |choice| GPU.open(model.clone(), Some(Device::open(&choice)?), options);
-    if !CPU.takes(options.precision) {
-        return gpu(AdapterChoice::Best);
-    }
-    match gpu(AdapterChoice::Real) {
-        Ok(opened) => Ok(Opened { why: Why::RealGpu, ..opened }),
-        Err(error) => Ok(Opened { why: Why::NoRealGpu(error), ..CPU.open(model, None, options)? }),
     }
 }
 

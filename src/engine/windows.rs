@@ -1,11 +1,15 @@
-//! One trace evaluated window by window: asks a query for a window of legs, and goes on exactly once the candidates in it
-//! are known.
+//! One trace evaluated window by window: asks a query for a window of legs, and goes on exactly once the candidates in
+//! it are known.
 
 use super::progress::Progress;
 use crate::candidates::{Frame, LEGS, Line, Query, ROOM, Simd, Slopes, Window, Wrapping};
 use crate::rope::TraceRecord;
 use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
+
+/// The most legs that one query covers unless told otherwise: the exact update tries each candidate at each leg, so
+/// longer windows gain little.
+pub const WINDOW: usize = 256;
 
 /// How many legs the first window of a trace covers at most, and the first after an event.
 pub(crate) const FIRST_WINDOW: usize = 16;
@@ -19,7 +23,8 @@ pub(super) struct Windows {
     window: Option<Window>,
     /// The point at which the window starts.
     first: usize,
-    /// The lines that can be met in the window: first that of the unwrapping ray, if it is one, then those of candidates.
+    /// The lines that can be met in the window: first that of the unwrapping ray, if it is one, then those of
+    /// candidates.
     lines: Vec<Wrapping>,
     /// How many of them are the unwrapping ray's.
     unwrappings: usize,
@@ -58,7 +63,8 @@ impl Windows {
         model.pivot(self.progress.rope.contacts().last().map(|c| c.vertex))
     }
 
-    /// The query for what comes next, of at most `most` legs; the trace is not done. Leaves the window's slopes in `slopes`.
+    /// The query for what comes next, of at most `most` legs; the trace is not done. Leaves the window's slopes in
+    /// `slopes`.
     pub(super) fn ask(
         &mut self,
         frame: &Frame,

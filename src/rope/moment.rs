@@ -11,8 +11,8 @@ pub struct Moment {
     pub step: usize,
     /// How much of the step has been made, from 0 to 1.
     pub share: f64,
-    /// Where the free end is, in the scene's frame and unit. At the end of a step it is the trace's point; within one it
-    /// is a constructed point and so rounded.
+    /// Where the free end is, in the scene's frame and unit. At the end of a step it is the trace's point; within one
+    /// it is a constructed point and so rounded.
     pub at: DVec2,
     /// The number of the event that has just happened; `None` at the end of a step.
     pub event: Option<usize>,
@@ -26,8 +26,8 @@ impl Moment {
         Moment { step: 0, share: 0.0, at: anchor, event: None, rope: Rope::new(anchor) }
     }
 
-    /// The corners that the rope has as the free end moves on: [`Rope::taut`], but with the pivot even where a rope that
-    /// has just been wrapped does not bend yet, or stands on it. O(contacts).
+    /// The corners that the rope has as the free end moves on: [`Rope::taut`], but with the pivot even where a rope
+    /// that has just been wrapped does not bend yet, or stands on it. O(contacts).
     pub fn turns(&self) -> Vec<Contact> {
         let mut rope = self.rope.clone();
         match rope.pop() {

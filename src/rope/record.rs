@@ -74,8 +74,8 @@ pub struct TraceRecord {
     pub depth: u32,
     /// The largest of its depths after every step.
     pub max_depth: u32,
-    /// The taut rope at the end: its turns from the anchor, each with its vertex's position and the side on which that lies, as
-    /// if y pointed up.
+    /// The taut rope at the end: its turns from the anchor, each with its vertex's position and the side on which that
+    /// lies, as if y pointed up.
     pub wraps: Vec<(DVec2, Side)>,
     /// The unit vector along which the rope pulls the free end at the end; `None` for a rope of no length.
     pub pull: Option<DVec2>,

@@ -42,8 +42,8 @@ impl Confidence {
         self.around(moments.mean, error, moments.count)
     }
 
-    /// A value whose standard error was estimated from `count` independent parts: Student's interval. Fewer than two say
-    /// nothing of an error.
+    /// A value whose standard error was estimated from `count` independent parts: Student's interval. Fewer than two
+    /// say nothing of an error.
     pub(super) fn around(&self, value: f64, error: Option<f64>, count: u64) -> Estimate {
         let error = error.filter(|_| count > 1);
         let half = error.map(|error| error * student(count - 1, self.outside));
@@ -59,14 +59,14 @@ impl Confidence {
         let (p, q) = (count as f64 / n, (of - count) as f64 / n);
         let z2 = self.normal * self.normal;
         let half = self.normal * (p * q / n + z2 / (4.0 * n * n)).sqrt();
-        // The ends solve (p - x)^2 = z^2 x (1 - x) / n. The lower is the square of p over the other solution, and so keeps its
-        // digits where it is close to 0; the upper is as far from 1 as the lower of the cases left is from 0.
+        // The ends solve (p - x)^2 = z^2 x (1 - x) / n. The lower is the square of p over the other solution, and so
+        // keeps its digits where it is close to 0; the upper is as far from 1 as the lower of the cases left is from 0.
         let low = |p: f64| p * p / (p + z2 / (2.0 * n) + half);
         Estimate { value: p, error: Some((p * q / n).sqrt()), low: Some(low(p)), high: Some(1.0 - low(q)) }
     }
 
-    /// The ranks, counted from 1, of the two among `of` sorted numbers that hold the quantile of `share`, the exact interval
-    /// of order statistics; `None` for an end that is beyond what was seen.
+    /// The ranks, counted from 1, of the two among `of` sorted numbers that hold the quantile of `share`, the exact
+    /// interval of order statistics; `None` for an end that is beyond what was seen.
     pub(super) fn ranks(&self, share: f64, of: u64) -> [Option<u64>; 2] {
         order::ranks(share, of, self.outside)
     }
@@ -116,8 +116,8 @@ mod tests {
         assert_eq!(Confidence::new(0.95).around(3.0, Some(0.0), 1).high, None);
     }
 
-    /// How many of how many, at which confidence, the interval's lower end and how far its upper end is from 1: Wilson's
-    /// formula, with mpmath 1.4.1 at 50 digits.
+    /// How many of how many, at which confidence, the interval's lower end and how far its upper end is from 1:
+    /// Wilson's formula, with mpmath 1.4.1 at 50 digits.
     #[test]
     fn shares_have_wilsons_interval_at_the_extremes() {
         let known = [

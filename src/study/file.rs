@@ -154,8 +154,8 @@ impl Plan {
 }
 
 impl PlanError {
-    /// The same of the study's file at `path`: with its name and, where a key of it is at fault, the line. What is wrong with other
-    /// files stays as it is.
+    /// The same of the study's file at `path`: with its name and, where a key of it is at fault, the line. What is
+    /// wrong with other files stays as it is.
     #[must_use]
     pub fn in_file(self, path: &Path) -> Self {
         let text = read_text(path, SETTINGS_MAX).unwrap_or_default();

@@ -91,7 +91,8 @@ fn culprit<'k>(document: &toml::Table, message: &str, keys: &'k [Key]) -> Option
         Plan::deserialize(toml::Value::Table(document.clone())).err().map(|e| e.message().to_owned())
     };
     let whole = fault(document);
-    // How surely a key is at fault: without it nothing is, or nothing but that it is missing; or another fault comes first.
+    // How surely a key is at fault: without it nothing is, or nothing but that it is missing; or another fault comes
+    // first.
     let decides = |key: &Key| {
         let mut names: Vec<&str> = key.name.split('.').collect();
         let last = names.pop().unwrap_or_default();

@@ -17,8 +17,8 @@ pub(super) struct FreeSpace<'a> {
 }
 
 impl<'a> FreeSpace<'a> {
-    /// Finds the space by a flood through a triangulation of the walls, in O(n log n); `None` where that cannot take the
-    /// coordinates or the scene's bounding box has no area.
+    /// Finds the space by a flood through a triangulation of the walls, in O(n log n); `None` where that cannot take
+    /// the coordinates or the scene's bounding box has no area.
     pub(super) fn new(model: &'a Model) -> Option<Self> {
         let region = Region::reached(model, &Visibility::new(model)?)?;
         Some(FreeSpace { model, region })
@@ -115,8 +115,8 @@ impl Region {
     }
 }
 
-/// What of a polygon lies in the box, up to roundings (Sutherland and Hodgman, "Reentrant polygon clipping", Commun. ACM 17,
-/// 1974).
+/// What of a polygon lies in the box, up to roundings (Sutherland and Hodgman, "Reentrant polygon clipping", Commun.
+/// ACM 17, 1974).
 fn clip(polygon: &[DVec2], low: DVec2, high: DVec2) -> Vec<DVec2> {
     let mut kept = polygon.to_vec();
     for (axis, side, sign) in [(0, low.x, 1.0), (0, high.x, -1.0), (1, low.y, 1.0), (1, high.y, -1.0)] {

@@ -11,6 +11,7 @@ mod plan;
 mod plan_error;
 mod random;
 mod run;
+mod shard;
 mod state;
 mod student;
 mod summary;
@@ -25,7 +26,8 @@ pub use opened::Study;
 pub use plan::{AnchorPlan, OutputPlan, Plan, RunPlan, Sampled, ScenePlan, UntilPlan};
 pub use plan_error::PlanError;
 pub use run::{RunError, Spent, run, run_again};
-pub use state::{Check, Kept, Part, Shard, State, StateError, Stopped, merge};
+pub use shard::Shard;
+pub use state::{Check, Kept, Part, State, StateError, Stopped, merge};
 pub use summary::Summary;
 pub use surroundings::anchor_warnings;
 // All answers of tallies, and the plan of their options.

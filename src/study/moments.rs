@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Count, mean, sum of squared differences from the mean, and extremes (Welford, Technometrics 4, 1962; merged after Chan,
-/// Golub and LeVeque, 1979). Sums of floats depend on their order: numbers are taken in the order of the traces, and blocks
-/// are merged in theirs.
+/// Count, mean, sum of squared differences from the mean, and extremes (Welford, Technometrics 4, 1962; merged after
+/// Chan, Golub and LeVeque, 1979). Sums of floats depend on their order: numbers are taken in the order of the traces,
+/// and blocks are merged in theirs.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Moments {
     pub count: u64,

@@ -11,7 +11,7 @@ use super::free_space::FreeSpace;
 use super::plan::{AnchorPlan, Plan};
 use super::plan_error::PlanError;
 use super::random::{Purpose, Random};
-use super::state::Shard;
+use super::shard::Shard;
 use super::tally::{Setting, Tallies};
 use super::walk::Walks;
 use crate::example::BuiltIn;
@@ -40,8 +40,8 @@ impl Study {
     ///
     /// # Errors
     ///
-    /// What [`Plan::checked`] says, a scene that cannot be read or has no place for the rope, a walk that cannot be walked
-    /// there.
+    /// What [`Plan::checked`] says, a scene that cannot be read or has no place for the rope, a walk that cannot be
+    /// walked there.
     pub fn open(plan: Plan, folder: &Path) -> Result<Self, PlanError> {
         let plan = counted(plan.checked()?, folder)?;
         let scene = match (&plan.scene.built_in, &plan.scene.file) {
@@ -89,8 +89,8 @@ impl Study {
         &self.tallies.setting.models
     }
 
-    /// A hash of all that the answer depends on: the plan (but for what is written besides the summary), the scene, and the
-    /// traces given.
+    /// A hash of all that the answer depends on: the plan (but for what is written besides the summary), the scene, and
+    /// the traces given.
     pub fn identity(&self) -> &str {
         &self.identity
     }
@@ -110,7 +110,8 @@ impl Study {
         })
     }
 
-    /// The numbers of the traces at these places of a shard, block by block, each with its place among the shard's blocks.
+    /// The numbers of the traces at these places of a shard, block by block, each with its place among the shard's
+    /// blocks.
     pub(super) fn numbers(
         &self,
         shard: Shard,
@@ -125,8 +126,8 @@ impl Study {
         })
     }
 
-    /// Trace `number`, the same on every machine. O(its steps) where it is drawn; where the traces come from a file, that is
-    /// read up to the one that it numbers so.
+    /// Trace `number`, the same on every machine. O(its steps) where it is drawn; where the traces come from a file,
+    /// that is read up to the one that it numbers so.
     ///
     /// # Errors
     ///
@@ -178,8 +179,8 @@ impl Study {
         self.plan.run.trade().coarsened(trace, model)
     }
 
-    /// Refuses a study whose walks all stand still: no step of the first traces, one at least from each anchor and five in
-    /// all, leads anywhere. O(steps) of the first trace that moves, and all that was tried for those that do not.
+    /// Refuses a study whose walks all stand still: no step of the first traces, one at least from each anchor and five
+    /// in all, leads anywhere. O(steps) of the first trace that moves, and all that was tried for those that do not.
     ///
     /// # Errors
     ///
@@ -197,8 +198,9 @@ impl Study {
         }
         let start = *self.drawn(0).ends().last().expect("a trace has points");
         Err(PlanError::new(format!(
-            "walk: all walks stand still: none of the {steps} steps of the first {few} traces leads anywhere, that of trace 0 \
-             from {}, since each would meet a wall or the border of the scene; give a step shorter than {}, or another anchor",
+            "walk: all walks stand still: none of the {steps} steps of the first {few} traces leads anywhere, that of \
+             trace 0 from {}, since each would meet a wall or the border of the scene; give a step shorter than {}, or \
+             another anchor",
             Shown(start),
             number(step)
         )))
@@ -285,8 +287,8 @@ fn skip(reader: &mut TraceReader, count: u64) -> Result<u64, PlanError> {
     Ok(skipped)
 }
 
-/// The plan with the number of its traces: where it does not say how many of a file it takes, all that there are. Reads the
-/// file to its end for that.
+/// The plan with the number of its traces: where it does not say how many of a file it takes, all that there are. Reads
+/// the file to its end for that.
 fn counted(mut plan: Plan, folder: &Path) -> Result<Plan, PlanError> {
     let count = match (plan.walk.given(), plan.run.traces) {
         (Some(file), None) => {
@@ -331,8 +333,8 @@ fn models(plan: &Plan, scene: &Scene) -> Result<Vec<Arc<Model>>, PlanError> {
     }
 }
 
-/// Part of every study's identity. The number is to be raised whenever traces are drawn, counted or estimated in another way, so
-/// that no study goes on with what came out before; a test of this module notices.
+/// Part of every study's identity. The number is to be raised whenever traces are drawn, counted or estimated in
+/// another way, so that no study goes on with what came out before; a test of this module notices.
 pub(super) const ANSWERS: u32 = 3;
 
 fn identity(plan: &Plan, models: &[Arc<Model>], given: Option<&Path>) -> Result<String, PlanError> {

@@ -2,15 +2,16 @@
 
 use super::student::normal;
 
-/// Up to this variance the binomial distribution is summed, over some 20 standard deviations: 2,000,000 terms at the most.
+/// Up to this variance the binomial distribution is summed, over some 20 standard deviations: 2,000,000 terms at the
+/// most.
 const SUMMED: f64 = 1e10;
 
-/// Of `count` independent numbers, sorted and counted from 1, the ranks of the two that hold the quantile between them of which
-/// a `share` of the distribution lies below. Each lies on the wrong side of it with a probability of at most half of
-/// `outside`, whatever the distribution; `None` where even the least, or the greatest, is too likely to.
+/// Of `count` independent numbers, sorted and counted from 1, the ranks of the two that hold the quantile between them
+/// of which a `share` of the distribution lies below. Each lies on the wrong side of it with a probability of at most
+/// half of `outside`, whatever the distribution; `None` where even the least, or the greatest, is too likely to.
 ///
-/// So many of the numbers lie below the quantile as the binomial distribution says (David and Nagaraja, "Order Statistics", 3rd
-/// ed., 7.1). O(standard deviation of that number), at most some milliseconds.
+/// So many of the numbers lie below the quantile as the binomial distribution says (David and Nagaraja, "Order
+/// Statistics", 3rd ed., 7.1). O(standard deviation of that number), at most some milliseconds.
 pub(super) fn ranks(share: f64, count: u64, outside: f64) -> [Option<u64>; 2] {
     let low = lowest(share, count, outside);
     // Seen from above.
@@ -18,7 +19,8 @@ pub(super) fn ranks(share: f64, count: u64, outside: f64) -> [Option<u64>; 2] {
     [low, high]
 }
 
-/// The greatest rank that no more than half of `outside` puts above the quantile: below which lie fewer numbers than that.
+/// The greatest rank that no more than half of `outside` puts above the quantile: below which lie fewer numbers than
+/// that.
 fn lowest(share: f64, count: u64, outside: f64) -> Option<u64> {
     let (n, variance) = (count as f64, count as f64 * share * (1.0 - share));
     let rank = if variance <= SUMMED { summed(share, n, 0.5 * outside) } else { expanded(share, n, variance, outside) };
@@ -54,7 +56,8 @@ fn summed(share: f64, n: f64, least: f64) -> f64 {
     k
 }
 
-/// The same by the expansion of Cornish and Fisher, which is off by less than one in a hundred thousand standard deviations.
+/// The same by the expansion of Cornish and Fisher, which is off by less than one in a hundred thousand standard
+/// deviations.
 fn expanded(share: f64, n: f64, variance: f64, outside: f64) -> f64 {
     let z = normal(outside);
     let skewed = (1.0 - 2.0 * share) * (z * z - 1.0) / 6.0;
@@ -65,8 +68,8 @@ fn expanded(share: f64, n: f64, variance: f64, outside: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Shares, counts and confidences with their ranks: from the binomial distribution's cumulative probabilities with mpmath
-    /// 1.4.1 at 30 digits; the last three from SciPy 1.17.1's `stats.binom.ppf`.
+    /// Shares, counts and confidences with their ranks: from the binomial distribution's cumulative probabilities with
+    /// mpmath 1.4.1 at 30 digits; the last three from SciPy 1.17.1's `stats.binom.ppf`.
     #[test]
     fn known_ranks() {
         let known = [
@@ -92,7 +95,8 @@ mod tests {
         assert_eq!(ranks(0.5, 0, 0.05), [None, None]);
     }
 
-    /// The definition, with all probabilities of Pascal's triangle: each rank misses rarely enough, and the next would not.
+    /// The definition, with all probabilities of Pascal's triangle: each rank misses rarely enough, and the next would
+    /// not.
     #[test]
     fn ranks_are_as_close_as_they_can_be() {
         for (share, outside) in [(0.01, 0.05), (0.25, 0.1), (0.5, 0.05), (0.9, 0.01), (0.99, 0.5)] {

@@ -53,8 +53,8 @@ pub struct ScenePlan {
     /// The layers whose walls are left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub without_layers: Vec<String>,
-    /// How far walls may lie from the curves of an .svg or .dxf, in the scene's unit; without it a 2000th of the drawing's
-    /// longer side.
+    /// How far walls may lie from the curves of an .svg or .dxf, in the scene's unit; without it a 2000th of the
+    /// drawing's longer side.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flatten: Option<f64>,
     /// What unknown cells of a `map_server`'s map are: `free` or `blocked`.
@@ -123,12 +123,12 @@ pub struct RunPlan {
     pub seed: u64,
     /// What decides: exact signs, or f32 alone on a GPU, whose ropes can be wrong.
     pub precision: Precision,
-    /// Every so many points of a trace one is used, where no wall is in the way of the longer step; 1 for all. Ropes can be
-    /// wrong otherwise.
+    /// Every so many points of a trace one is used, where no wall is in the way of the longer step; 1 for all. Ropes
+    /// can be wrong otherwise.
     #[serde(skip_serializing_if = "is_one")]
     pub stride: u32,
-    /// By how much walls may move for there to be fewer wall ends; not at all without it. Traces are drawn among the walls as
-    /// they are.
+    /// By how much walls may move for there to be fewer wall ends; not at all without it. Traces are drawn among the
+    /// walls as they are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simplify: Option<f64>,
 }
@@ -141,8 +141,8 @@ fn is_one(stride: &u32) -> bool {
 const TRACES: u64 = 10_000;
 
 impl RunPlan {
-    /// How many traces there are: those that it asks for, else 10,000. Of given traces that is only known once the file was
-    /// read: the plan of a [`Study`](super::Study) says it.
+    /// How many traces there are: those that it asks for, else 10,000. Of given traces that is only known once the file
+    /// was read: the plan of a [`Study`](super::Study) says it.
     pub fn count(&self) -> u64 {
         self.traces.unwrap_or(TRACES)
     }
@@ -159,8 +159,8 @@ impl Default for RunPlan {
     }
 }
 
-/// When to stop before all traces are done. Looked at after each block, in the order of the blocks; the time, after as many as
-/// are computed at once.
+/// When to stop before all traces are done. Looked at after each block, in the order of the blocks; the time, after as
+/// many as are computed at once.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct UntilPlan {

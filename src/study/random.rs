@@ -1,14 +1,14 @@
 //! Random numbers that are the same on every machine, and that any trace finds without those before it.
 //!
-//! Philox4x32-10 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011) makes numbers by
-//! encrypting a counter: nothing is carried from one number to the next. The key is a study's seed; the counter names the
-//! trace, what the numbers are for, and the block of four words.
+//! Philox4x32-10 (Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011) makes numbers
+//! by encrypting a counter: nothing is carried from one number to the next. The key is a study's seed; the counter
+//! names the trace, what the numbers are for, and the block of four words.
 
 use glam::DVec2;
 use pulp::{Arch, Simd, WithSimd};
 
-/// How many blocks are made at once, so that several are made in one instruction. The order of the words depends on it, and so
-/// do all traces.
+/// How many blocks are made at once, so that several are made in one instruction. The order of the words depends on it,
+/// and so do all traces.
 pub(in crate::study) const BLOCKS: usize = 8;
 
 /// The low half of a word.
@@ -30,8 +30,8 @@ pub(in crate::study) enum Purpose {
 
 /// The random numbers of one trace for one purpose.
 ///
-/// There are 2^56 blocks of them, four words each, which none of 2^31 points uses up. The counter's second word holds the
-/// purpose in its low byte and in the others what does not fit into the first, so no stream runs into another's.
+/// There are 2^56 blocks of them, four words each, which none of 2^31 points uses up. The counter's second word holds
+/// the purpose in its low byte and in the others what does not fit into the first, so no stream runs into another's.
 pub(in crate::study) struct Random {
     key: [u64; 2],
     purpose: Purpose,
@@ -97,12 +97,13 @@ impl Random {
     #[inline]
     pub(in crate::study) fn direction(&mut self) -> DVec2 {
         let (DVec2 { x, y }, square) = self.in_disc();
-        // Twice the angle of a point of the disc is as uniform as the angle itself (von Neumann, 1951), and needs no root.
+        // Twice the angle of a point of the disc is as uniform as the angle itself (von Neumann, 1951), and needs no
+        // root.
         DVec2::new(x * x - y * y, 2.0 * x * y) / square
     }
 
-    /// Two independent normal numbers of mean 0 and variance 1, by the polar method (Marsaglia and Bray, "A convenient method
-    /// for generating normal variables", SIAM Rev. 6, 1964).
+    /// Two independent normal numbers of mean 0 and variance 1, by the polar method (Marsaglia and Bray, "A convenient
+    /// method for generating normal variables", SIAM Rev. 6, 1964).
     #[inline]
     pub(in crate::study) fn normal(&mut self) -> DVec2 {
         let (p, square) = self.in_disc();

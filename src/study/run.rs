@@ -12,7 +12,8 @@ use rayon::prelude::*;
 use super::moments::Moments;
 use super::opened::{Source, Study};
 use super::plan_error::PlanError;
-use super::state::{Shard, State, Stopped};
+use super::shard::Shard;
+use super::state::{State, Stopped};
 use super::tally::{Block, Counts, Merge, Traced};
 use crate::engine::{Engine, EngineError, Job};
 use crate::rope::TraceRecord;
@@ -66,15 +67,16 @@ enum Tallied {
 
 /// Goes on with `state` until the study, or the shard, is done or the job is stopped.
 ///
-/// `engines` has one for each of the study's [`models`](Study::models), in their order. After each group of traces `after`
-/// is called with the state, the group's records, and how many of them, from the first on, are in the state. The state is
-/// the same after the same number of traces, whatever the engines, their number of threads and how often the study was interrupted.
-/// It is locked only while traces are added to it and `after` runs, so that another thread may save it at any other time.
+/// `engines` has one for each of the study's [`models`](Study::models), in their order. After each group of traces
+/// `after` is called with the state, the group's records, and how many of them, from the first on, are in the state.
+/// The state is the same after the same number of traces, whatever the engines, their number of threads and how often
+/// the study was interrupted. It is locked only while traces are added to it and `after` runs, so that another thread
+/// may save it at any other time.
 ///
 /// # Errors
 ///
-/// What the traces, the engines or the caller say; [`EngineError::Stopped`] when the job was stopped. Traces that were not
-/// finished by then are not in the state.
+/// What the traces, the engines or the caller say; [`EngineError::Stopped`] when the job was stopped. Traces that were
+/// not finished by then are not in the state.
 ///
 /// # Panics
 ///
@@ -149,8 +151,8 @@ fn in_groups<E: Send>(
     Ok(spent)
 }
 
-/// Evaluates traces of a study again, without counting them: those at `places` among the traces of the shard, in order. Groups of
-/// records are given to `each`.
+/// Evaluates traces of a study again, without counting them: those at `places` among the traces of the shard, in order.
+/// Groups of records are given to `each`.
 ///
 /// # Errors
 ///
@@ -174,8 +176,8 @@ pub fn run_again<E: Send>(
     })
 }
 
-/// Draws and evaluates the traces at these places, in groups of at most that size. The next group is drawn while one is evaluated
-/// and given to `each`, with how many seconds were waited for it and how long evaluating took.
+/// Draws and evaluates the traces at these places, in groups of at most that size. The next group is drawn while one is
+/// evaluated and given to `each`, with how many seconds were waited for it and how long evaluating took.
 fn groups<E: Send>(
     study: &Study,
     engines: &mut [Box<dyn Engine>],
@@ -217,8 +219,8 @@ fn groups<E: Send>(
     })
 }
 
-/// Counts a group's traces, block by block: each one's place among the shard's blocks, how many traces it has here, and what
-/// they come to. `open` is what was counted before of the block with which the group goes on.
+/// Counts a group's traces, block by block: each one's place among the shard's blocks, how many traces it has here, and
+/// what they come to. `open` is what was counted before of the block with which the group goes on.
 fn tally(
     study: &Study,
     shard: Shard,
@@ -259,7 +261,8 @@ fn group_size(study: &Study, engines: &[Box<dyn Engine>]) -> u64 {
     if whole > 0 { whole } else { most }
 }
 
-/// After that time a group is closed though there is room for more, so that what was drawn is evaluated and saved in time.
+/// After that time a group is closed though there is room for more, so that what was drawn is evaluated and saved in
+/// time.
 const LONGEST: Duration = Duration::from_secs(1);
 
 /// About how long it takes to draw the traces between two looks at the clock.
@@ -277,7 +280,8 @@ struct Drawing<'s> {
 }
 
 impl Drawing<'_> {
-    /// The first of the traces at these places, as many as are drawn in time. A group that begins within a block ends with it.
+    /// The first of the traces at these places, as many as are drawn in time. A group that begins within a block ends
+    /// with it.
     fn next<E>(&mut self, places: Range<u64>, job: &Job) -> Result<Group, RunError<E>> {
         let clock = Instant::now();
         let block = u64::from(self.study.plan().run.block);

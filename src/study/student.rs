@@ -1,22 +1,24 @@
 //! Quantiles of the normal distribution and of Student's.
 //!
-//! Both are asked for by the share that lies *outside*, beyond the quantile on either side: of a confidence near 1 that share
-//! keeps all its digits (1 - confidence is exact from 0.5 on), while 0.5 + 0.5 * confidence loses them.
+//! Both are asked for by the share that lies *outside*, beyond the quantile on either side: of a confidence near 1 that
+//! share keeps all its digits (1 - confidence is exact from 0.5 on), while 0.5 + 0.5 * confidence loses them.
 //!
 //! Elementary functions are those of `libm`, which give the same bytes on every machine.
 
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
-/// From so many degrees of freedom on, the share outside is computed by an asymptotic series, below by one that converges.
+/// From so many degrees of freedom on, the share outside is computed by an asymptotic series, below by one that
+/// converges.
 const ASYMPTOTIC: u64 = 30;
 
 /// How many terms of the asymptotic series are taken.
 ///
 /// It follows from `outside = c * integral from L of exp(-T s) / sqrt(s) * phi(s / 2) ds` with T = freedom / 2 - 1/4,
 /// L = ln(1 + t^2 / freedom) and phi(y) = (sinh(y) / y)^(-1/2), whose power series in y^2 is integrated term by term
-/// (DiDonato and Morris, ACM Trans. Math. Softw. 18, 1992, section 9, for one parameter 1/2). Its coefficients alternate and
-/// fall by 1/pi^2 each, so the error is about the first term left out. That is greatest for few degrees of freedom and far out:
-/// 5e-18 of the share for 30 of them and a share of 1e-12, and 2e-14 for the least share there is, 2^-53.
+/// (DiDonato and Morris, ACM Trans. Math. Softw. 18, 1992, section 9, for one parameter 1/2). Its coefficients
+/// alternate and fall by 1/pi^2 each, so the error is about the first term left out. That is greatest for few degrees
+/// of freedom and far out: 5e-18 of the share for 30 of them and a share of 1e-12, and 2e-14 for the least share there
+/// is, 2^-53.
 const TERMS: usize = 16;
 
 /// The power series of (sinh(y) / y)^(-1/2) in y^2.
@@ -49,16 +51,17 @@ struct Tail {
     density: f64,
 }
 
-/// So many standard deviations of a normal distribution on either side of its mean leave this share outside, above 0 and at
-/// most 1. Good to some units in the last place for shares up to 0.5; of larger ones, to those of the share inside.
+/// So many standard deviations of a normal distribution on either side of its mean leave this share outside, above 0
+/// and at most 1. Good to some units in the last place for shares up to 0.5; of larger ones, to those of the share
+/// inside.
 pub(super) fn normal(outside: f64) -> f64 {
     let tail = |t: f64| Tail { outside: libm::erfc(t / SQRT_2), density: libm::exp(-0.5 * t * t) / (2.0 * PI).sqrt() };
     // No less than the quantile, since erfc(x) <= exp(-x^2).
     solve((-2.0 * libm::log(outside)).sqrt(), outside, tail)
 }
 
-/// The quantile of Student's distribution with that many degrees of freedom, at least 1, that leaves this share outside, above
-/// 0 and at most 1. The relative error is below 1e-13 for shares up to 0.5.
+/// The quantile of Student's distribution with that many degrees of freedom, at least 1, that leaves this share
+/// outside, above 0 and at most 1. The relative error is below 1e-13 for shares up to 0.5.
 pub(super) fn student(freedom: u64, outside: f64) -> f64 {
     let n = freedom as f64;
     match freedom {
@@ -81,8 +84,9 @@ pub(super) fn student(freedom: u64, outside: f64) -> f64 {
     }
 }
 
-/// The `t` with that share outside, by Newton's method on logarithms, starting at `t`. The logarithm of the share is a concave
-/// falling function of ln t, so the steps converge from wherever they start: mostly four, some dozens where nearly all is outside.
+/// The `t` with that share outside, by Newton's method on logarithms, starting at `t`. The logarithm of the share is a
+/// concave falling function of ln t, so the steps converge from wherever they start: mostly four, some dozens where
+/// nearly all is outside.
 fn solve(mut t: f64, outside: f64, tail: impl Fn(f64) -> Tail) -> f64 {
     // What is inside has no digit left.
     if outside >= 1.0 {
@@ -100,8 +104,8 @@ fn solve(mut t: f64, outside: f64, tail: impl Fn(f64) -> Tail) -> f64 {
     t
 }
 
-/// For few degrees of freedom: the incomplete beta function as a series of positive terms. Close to the middle it is that of
-/// the share inside, so that neither takes more than some thousand terms.
+/// For few degrees of freedom: the incomplete beta function as a series of positive terms. Close to the middle it is
+/// that of the share inside, so that neither takes more than some thousand terms.
 fn converging(n: f64, factor: f64, t: f64) -> Tail {
     let along = libm::log1p(t * t / n);
     let density = factor / n.sqrt() * libm::exp(-0.5 * (n + 1.0) * along);
@@ -156,9 +160,9 @@ mod tests {
     /// Degrees of freedom, confidence, quantile.
     ///
     /// Computed with mpmath 1.4.1 at 60 digits, for the confidence as the f64 that stands here: the root of
-    /// `betainc(n/2, 1/2, 0, n/(n+t*t), regularized=True) == 1 - confidence` up to 10,000 degrees, beyond by the expansion of
-    /// Cornish and Fisher (Abramowitz and Stegun 26.7.5, four terms), which at 100,000 degrees agrees with the root to 1e-20.
-    /// SciPy 1.17.1's `stats.t.isf((1 - confidence) / 2, n)` gives the same to 2e-15.
+    /// `betainc(n/2, 1/2, 0, n/(n+t*t), regularized=True) == 1 - confidence` up to 10,000 degrees, beyond by the
+    /// expansion of Cornish and Fisher (Abramowitz and Stegun 26.7.5, four terms), which at 100,000 degrees agrees with
+    /// the root to 1e-20. SciPy 1.17.1's `stats.t.isf((1 - confidence) / 2, n)` gives the same to 2e-15.
     #[rustfmt::skip]
     const KNOWN: [(u64, f64, f64); 64] = [
         (1, 0.5, 1.0),
@@ -235,8 +239,8 @@ mod tests {
         }
     }
 
-    /// The two ways of computing meet, and no number of degrees makes a jump: the quantile falls towards the normal one, by
-    /// about (z^3 + z) / (4 n^2) from n to n + 1.
+    /// The two ways of computing meet, and no number of degrees makes a jump: the quantile falls towards the normal
+    /// one, by about (z^3 + z) / (4 n^2) from n to n + 1.
     #[test]
     fn quantiles_fall_with_the_degrees_of_freedom() {
         for confidence in [0.01, 0.5, 0.9, 0.95, 0.999, 1.0 - 1e-12, 1.0 - f64::EPSILON / 2.0] {

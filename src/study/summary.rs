@@ -1,17 +1,18 @@
-//! A study's answer: what `summary.json` holds. The same study gives the same bytes, wherever and in however many parts it
-//! was computed.
+//! A study's answer: what `summary.json` holds. The same study gives the same bytes, wherever and in however many parts
+//! it was computed.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::opened::Study;
 use super::plan::Plan;
-use super::state::{Shard, State, Stopped};
+use super::shard::Shard;
+use super::state::{State, Stopped};
 use super::tally::{self, Tally, table};
 use crate::trade::Traded;
 
 macro_rules! summary {
-    (options { $($_:tt)* } tallies { $($(#[$doc:meta])* $name:ident: $Answer:ty = $Tally:ty;)* }) => {
+    ($($(#[$doc:meta])* $name:ident: $Answer:ty = $Tally:ty;)*) => {
         /// The answer. Lengths are in the scene's unit.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
         pub struct Summary {
@@ -25,8 +26,9 @@ macro_rules! summary {
             pub steps: u64,
             /// The share of the steps that left the free end where it was; `None` where there are no steps.
             pub still: Option<f64>,
-            /// The share of the steps that met a wall or the scene's border as they were drawn first, so that they were drawn again,
-            /// not taken or thrown back, as `study.walk.at_walls` says; `None` for walks that have no such steps.
+            /// The share of the steps that met a wall or the scene's border as they were drawn first, so that they were
+            /// drawn again, not taken or thrown back, as `study.walk.at_walls` says; `None` for walks that have no such
+            /// steps.
             pub at_walls: Option<f64>,
             /// How many wraps and unwraps there were.
             pub events: u64,
@@ -72,7 +74,8 @@ macro_rules! summary {
 table!(summary);
 
 impl Summary {
-    /// The JSON Schema of `summary.json`; its descriptions say what each field means, and how bins and cells are numbered.
+    /// The JSON Schema of `summary.json`; its descriptions say what each field means, and how bins and cells are
+    /// numbered.
     pub fn schema() -> serde_json::Value {
         schemars::schema_for!(Summary).to_value()
     }

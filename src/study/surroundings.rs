@@ -14,12 +14,12 @@ const POCKET: f64 = 0.1;
 /// How many walls a scene has at most in which pockets are looked for: more take seconds.
 const WALLS: usize = 1 << 17;
 
-/// What is to be said of the model's anchor: that it lies inside of something solid, in a small pocket that walls close, or
-/// far outside of all walls, farther from the box round them than that is long and wide together. Sentences without a full
-/// stop; none for most anchors. O(n log n).
+/// What is to be said of the model's anchor: that it lies inside of something solid, in a small pocket that walls
+/// close, or far outside of all walls, farther from the box round them than that is long and wide together. Sentences
+/// without a full stop; none for most anchors. O(n log n).
 ///
-/// Nothing is said of pockets where walls cannot be triangulated, where they cross at a point that no f64 names, and of more
-/// than 131,072 walls.
+/// Nothing is said of pockets where walls cannot be triangulated, where they cross at a point that no f64 names, and of
+/// more than 131,072 walls.
 ///
 /// ```
 /// use tautline::scene::{Model, Scene};
@@ -44,7 +44,8 @@ pub fn anchor_warnings(model: &Model) -> Vec<String> {
         let away = short(beside.length());
         let (wide, high) = (short(size.x), short(size.y));
         return vec![format!(
-            "the anchor {shown} lies far outside of the walls: {away} away from the box round them, which is {wide} by {high}"
+            "the anchor {shown} lies far outside of the walls: {away} away from the box round them, which is {wide} by \
+             {high}"
         )];
     }
     if let Some(object) = solid_at(scene, anchor) {
@@ -58,7 +59,8 @@ pub fn anchor_warnings(model: &Model) -> Vec<String> {
         Some(share) if share < POCKET => {
             let share = short(100.0 * share);
             vec![format!(
-                "the anchor {shown} is closed in by walls: what can be reached from it is {share} % of the box round all walls"
+                "the anchor {shown} is closed in by walls: what can be reached from it is {share} % of the box round \
+                 all walls"
             )]
         }
         _ => Vec::new(),
@@ -159,7 +161,8 @@ mod tests {
         walls.extend(ring([1.0, 1.0], [2.0, 2.0]));
         walls.extend(ring([4.0, 4.0], [8.0, 8.0]));
         let scene = Scene::new(walls.clone()).unwrap();
-        let closed = "the anchor (1.5, 1.5) is closed in by walls: what can be reached from it is 1 % of the box round all walls";
+        let closed = "the anchor (1.5, 1.5) is closed in by walls: what can be reached from it is 1 % of the box round \
+                      all walls";
         assert_eq!(warned(&scene, [1.5, 1.5]), [closed]);
         // A sixth of the box, what is left of it, outside, and where a pocket is open.
         for anchor in [[5.0, 5.0], [3.0, 3.0], [-1.0, 5.0], [2.0, 1.0]] {

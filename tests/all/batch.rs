@@ -197,8 +197,8 @@ fn golden_ropes_from_the_device() {
     assert!(judged > 15_000, "only {judged} ropes were judged");
 }
 
-/// Short walls along a ring, all ends of which see most others: looks and lists give up, and all vertices are tried. Their
-/// number is also more than one page holds, so that lists of different lengths share a page.
+/// Short walls along a ring, all ends of which see most others: looks and lists give up, and all vertices are tried.
+/// Their number is also more than one page holds, so that lists of different lengths share a page.
 #[test]
 fn where_all_sees_all_everything_is_tried() {
     let n = 4500;

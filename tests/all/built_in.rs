@@ -41,7 +41,8 @@ fn random_walls_are_as_long_as_they_should_be() {
     let unit = 1.2 / 5000f64.sqrt();
     let lengths: Vec<f64> = walls(&BuiltIn::Random(5000).scene(2)).iter().map(|[a, b]| a.distance(*b) / unit).collect();
     assert!(lengths.iter().all(|l| (0.1 - 1e-9..=1.5 + 1e-9).contains(l)));
-    // The mean of 5,000 uniform numbers in 0.1..1.5 is 0.8, within some hundredths; so is the share of the longest tenth.
+    // The mean of 5,000 uniform numbers in 0.1..1.5 is 0.8, within some hundredths; so is the share of the longest
+    // tenth.
     let mean = lengths.iter().sum::<f64>() / 5000.0;
     assert!((mean - 0.8).abs() < 0.03, "{mean}");
     let longest = lengths.iter().filter(|l| **l > 1.36).count();

@@ -82,8 +82,8 @@ proptest! {
         }
     }
 
-    /// Legs that a window passes over without a look have both ends strictly on one side of the line, or are nearer to the
-    /// pivot than the vertex.
+    /// Legs that a window passes over without a look have both ends strictly on one side of the line, or are nearer to
+    /// the pivot than the vertex.
     #[test]
     fn no_crossing_of_a_line_is_passed_over(
         pivot in unit_point(),

@@ -9,8 +9,8 @@ use tautline::gpu::{DECIDE_WGSL, Deciding, Device, GpuPass, Tuning};
 
 use crate::support::{posts, software};
 
-/// Questions whose numbers are whole and small, so that no product is rounded, however a device fuses: coordinates to 40 put
-/// many points on the rays of vertices.
+/// Questions whose numbers are whole and small, so that no product is rounded, however a device fuses: coordinates to
+/// 40 put many points on the rays of vertices.
 fn whole_questions() -> impl Strategy<Value = (Vec<Vec2>, Vec<(Question, Vec<Vec2>)>)> {
     let point = |size: i8| [-size..=size, -size..=size].prop_map(|[x, y]| Vec2::new(x.into(), y.into()));
     let sign = prop_oneof![Just(-1.0f32), Just(0.0), Just(1.0)];

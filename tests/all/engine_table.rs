@@ -1,5 +1,6 @@
-//! Every engine of the table, in every precision and with every option that it takes, on the same properties. What it must give
-//! is what the table says it promises, so an engine is tested by being listed. What only one engine has, its own tests look at.
+//! Every engine of the table, in every precision and with every option that it takes, on the same properties. What it
+//! must give is what the table says it promises, so an engine is tested by being listed. What only one engine has, its
+//! own tests look at.
 
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -224,8 +225,8 @@ fn windows_of_any_bound_change_nothing() {
     }
 }
 
-/// Neither on the other traces, nor their order, nor the threads, nor what the engine did before; and records come in the order
-/// of the traces.
+/// Neither on the other traces, nor their order, nor the threads, nor what the engine did before; and records come in
+/// the order of the traces.
 #[test]
 fn no_trace_depends_on_the_others() {
     let walls = Arc::new(Model::new(random_walls(200, 4), None).unwrap());

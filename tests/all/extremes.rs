@@ -1,5 +1,5 @@
-//! Extreme cases on every engine. Those that promise right ropes must all give the same events, and the two methods the same
-//! ropes, after every step; `fast` and `note` must come to an end with records that are sound in themselves.
+//! Extreme cases on every engine. Those that promise right ropes must all give the same events, and the two methods the
+//! same ropes, after every step; `fast` and `note` must come to an end with records that are sound in themselves.
 
 use std::sync::Arc;
 use std::sync::OnceLock;
@@ -92,7 +92,8 @@ fn complaints(case: &Extreme) -> Vec<String> {
     let mut compare = |name: &str, engine: &mut dyn Engine| {
         wrong.extend(difference(&truth, &run(engine, &traces)).map(|what| format!("{name}, {what}")));
     };
-    // What has very many steps is evaluated once by each engine, and what a device would take minutes for, by the others.
+    // What has very many steps is evaluated once by each engine, and what a device would take minutes for, by the
+    // others.
     let is_short = traces.iter().map(SettledTrace::steps).sum::<usize>() <= 100_000;
     let suits_devices = truth.iter().all(|record| record.events.len() <= LONGEST_CHAIN);
     if is_short {
@@ -148,7 +149,8 @@ fn difference(truth: &[TraceRecord], found: &[TraceRecord]) -> Option<String> {
     Some(format!("trace {}, event {event}: {wrong:?} instead of {right:?}", truth.trace))
 }
 
-/// Whether the rope wraps round a vertex and not round a nearer one on the same line. Its taut rope would not show that.
+/// Whether the rope wraps round a vertex and not round a nearer one on the same line. Its taut rope would not show
+/// that.
 fn left_out(model: &Model, truth: &[TraceRecord]) -> Option<String> {
     let at = |vertex: u32| model.vertices()[vertex as usize];
     for record in truth.iter().filter(|record| record.events.len() * model.vertices().len() <= 1 << 23) {
@@ -170,8 +172,8 @@ fn left_out(model: &Model, truth: &[TraceRecord]) -> Option<String> {
     None
 }
 
-/// Whether the funnel has another taut rope after some step. Of very deep ropes only the length, bit for bit, and the depth
-/// are compared after each step, and all of the last.
+/// Whether the funnel has another taut rope after some step. Of very deep ropes only the length, bit for bit, and the
+/// depth are compared after each step, and all of the last.
 fn other_ropes(model: &Arc<Model>, case: &Extreme, truth: &[TraceRecord], found: &[TraceRecord]) -> Option<String> {
     for ((trace, truth), found) in case.traces.iter().zip(truth).zip(found) {
         let whole = trace.points.len() * truth.max_depth as usize <= 1 << 21;
@@ -207,8 +209,8 @@ fn other_end(truth: &[TraceRecord], found: &[TraceRecord]) -> Option<String> {
     ))
 }
 
-/// More events in one trace, and more contacts on one rope, than 16 bits can number. The cases above that are as long are not
-/// for devices, which answer one event of a trace a round: several traces at a time take no longer than one.
+/// More events in one trace, and more contacts on one rope, than 16 bits can number. The cases above that are as long
+/// are not for devices, which answer one event of a trace a round: several traces at a time take no longer than one.
 #[test]
 fn long_chains_on_devices() {
     let mut case = cases("windings").into_iter().find(|case| case.name == "100000 turns round 4 corners").unwrap();

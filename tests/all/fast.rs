@@ -1,5 +1,5 @@
-//! What `--precision fast` promises: the reference's ropes where f32 holds all products exactly; and everywhere that it comes
-//! to an end, with a record that is sound in itself and does not depend on the batch.
+//! What `--precision fast` promises: the reference's ropes where f32 holds all products exactly; and everywhere that it
+//! comes to an end, with a record that is sound in itself and does not depend on the batch.
 
 use std::sync::Arc;
 
@@ -81,8 +81,8 @@ fn where_f32_is_exact_fast_is_the_reference() {
     assert!(events.get() > 10 * cases as usize, "only {} events were compared", events.get());
 }
 
-/// The free end comes to the ray of a wall's end, goes out along it and comes back: the rope has a contact there, but never
-/// one that it bends round.
+/// The free end comes to the ray of a wall's end, goes out along it and comes back: the rope has a contact there, but
+/// never one that it bends round.
 #[test]
 fn a_contact_passed_straight_is_no_depth() {
     let walls = [[[1.0, 0.0], [1.0, 1.0]]].map(|wall| wall.map(DVec2::from));
@@ -94,7 +94,8 @@ fn a_contact_passed_straight_is_no_depth() {
     assert_eq!(run(&mut fast(&software(), &model), &trace), truth);
 }
 
-/// Scenes and traces at the ends of what is taken: 2^500, 2^-450, both at once, and a tiny scene 10^12 times its size away.
+/// Scenes and traces at the ends of what is taken: 2^500, 2^-450, both at once, and a tiny scene 10^12 times its size
+/// away.
 #[test]
 fn records_are_sound_at_the_ends_of_the_range() {
     let device = software();
@@ -120,8 +121,8 @@ fn records_are_sound_at_the_ends_of_the_range() {
     }
 }
 
-/// Round a box along its walls, from corner to corner, both ways, and back: points that stand on corners count as standing off
-/// them, on the side that the exact update has them on.
+/// Round a box along its walls, from corner to corner, both ways, and back: points that stand on corners count as
+/// standing off them, on the side that the exact update has them on.
 #[test]
 fn points_on_corners_are_taken_off_them() {
     let device = software();

@@ -1,5 +1,5 @@
-//! That the candidate pass misses nothing, on two million near-degenerate queries and on real walks; and that this is able to
-//! fail.
+//! That the candidate pass misses nothing, on two million near-degenerate queries and on real walks; and that this is
+//! able to fail.
 
 use std::sync::Arc;
 

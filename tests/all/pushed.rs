@@ -1,8 +1,8 @@
 //! What touching means, against a truth that pushes points off the walls really.
 //!
-//! On lattices, every point at which a trace touches is replaced by points a little off the walls, all round it, and all
-//! ways over such points that touch no wall are tried. A trace keeps to the rules exactly if there is such a way, and its
-//! rope is, but for that little, the rope of one of them.
+//! On lattices, every point at which a trace touches is replaced by points a little off the walls, all round it, and
+//! all ways over such points that touch no wall are tried. A trace keeps to the rules exactly if there is such a way,
+//! and its rope is, but for that little, the rope of one of them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -144,8 +144,8 @@ fn gpu_gives_the_references_events() {
     }
 }
 
-/// Traces that cross walls at will are evaluated all the same when they are only to be marked: they come to an end, and up
-/// to the step that breaks the rules nothing is different.
+/// Traces that cross walls at will are evaluated all the same when they are only to be marked: they come to an end, and
+/// up to the step that breaks the rules nothing is different.
 #[test]
 fn lawless_traces_are_lawful_until_they_cross_a_wall() {
     for kind in KINDS {
@@ -170,7 +170,8 @@ fn lawless_traces_are_lawful_until_they_cross_a_wall() {
     }
 }
 
-/// Records do not depend on the number of threads, the order of the traces, the size of rounds, or what else is evaluated.
+/// Records do not depend on the number of threads, the order of the traces, the size of rounds, or what else is
+/// evaluated.
 #[test]
 fn how_traces_are_batched_changes_nothing() {
     static ADAPTER: OnceLock<tautline::gpu::Device> = OnceLock::new();

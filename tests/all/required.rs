@@ -1,4 +1,5 @@
-//! What a scene requires, against a look at every wall for every vertex, and that leaving out the rest changes no event.
+//! What a scene requires, against a look at every wall for every vertex, and that leaving out the rest changes no
+//! event.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -32,8 +33,8 @@ struct Sector {
     linked: usize,
 }
 
-/// The sectors about all places, linked where one can go from one to the other without crossing a wall: along the line between
-/// two places that no wall crosses and no place lies on.
+/// The sectors about all places, linked where one can go from one to the other without crossing a wall: along the line
+/// between two places that no wall crosses and no place lies on.
 struct Sectors {
     places: Vec<DVec2>,
     sectors: Vec<Sector>,
@@ -155,7 +156,8 @@ fn check(model: &Model) -> Result<usize, TestCaseError> {
     for (v, p) in (0..).zip(model.vertices()) {
         let is_required = required.contains(p);
         prop_assert!(!is_required || kept.contains(&v), "{p} is left out of {kept:?}");
-        // Where walls cross at other points, some of them stay open, and what is reached beyond them is no part of the truth.
+        // Where walls cross at other points, some of them stay open, and what is reached beyond them is no part of the
+        // truth.
         prop_assert!(is_required || more || !kept.contains(&v), "{p} is kept");
     }
     Ok(model.vertices().len() - kept.len())

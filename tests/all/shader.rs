@@ -55,8 +55,8 @@ fn found_out(model: &Arc<Model>, keep_all: bool, walker: Walker, count: u64, cha
         let mut evaluate = || engine.evaluate(&traces, &Job::new());
         match evaluate() {
             Ok(records) => records == truth,
-            // A changed shader may name vertices that it was not given. Rounds are on their way then; the engine is ready for
-            // the next evaluation all the same.
+            // A changed shader may name vertices that it was not given. Rounds are on their way then; the engine is
+            // ready for the next evaluation all the same.
             Err(error) => {
                 assert!(error.to_string().contains("it named a vertex that it was not given"), "{error}");
                 assert_eq!(evaluate().unwrap_err().to_string(), error.to_string());

@@ -1,5 +1,5 @@
-//! Walks simulated again by what docs/studies.md says alone, with its numbers read from there, and compared with what the
-//! program draws, bit for bit. Nothing of the library is used.
+//! Walks simulated again by what docs/studies.md says alone, with its numbers read from there, and compared with what
+//! the program draws, bit for bit. Nothing of the library is used.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;

@@ -194,8 +194,8 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     }
     for (held, (name, _)) in held.iter().zip(&truth) {
         let share = f64::from(*held) / f64::from(STUDIES);
-        // Four standard deviations of what 400 studies can show: 0.06. Quantiles come in steps of the sketch, which only
-        // makes their intervals wider.
+        // Four standard deviations of what 400 studies can show: 0.06. Quantiles come in steps of the sketch, which
+        // only makes their intervals wider.
         let most = if name == "median" { 1.0 } else { 0.96 };
         assert!((0.84..=most).contains(&share), "{name}: {share} of the intervals of 0.9 hold the truth");
     }
@@ -203,10 +203,10 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
 
 /// By how much the angle about a small obstacle spreads, of which that share is at least a whole turn either way.
 ///
-/// The angle of a walk about what it cannot enter has in the limit the density `sech(pi x / 2 s) / 2 s`, where s is half the
-/// logarithm of the number of steps and a constant that depends on the obstacle (Bélisle, "Windings of random walks", Ann.
-/// Probab. 17, 1989; Rudnick and Hu, "The winding angle distribution of an ordinary random walk", J. Phys. A 20, 1987). So
-/// a share of `4 / pi * atan(exp(-pi x / 2 s))` is at x or beyond, and x is a whole turn here.
+/// The angle of a walk about what it cannot enter has in the limit the density `sech(pi x / 2 s) / 2 s`, where s is
+/// half the logarithm of the number of steps and a constant that depends on the obstacle (Bélisle, "Windings of random
+/// walks", Ann. Probab. 17, 1989; Rudnick and Hu, "The winding angle distribution of an ordinary random walk", J. Phys.
+/// A 20, 1987). So a share of `4 / pi * atan(exp(-pi x / 2 s))` is at x or beyond, and x is a whole turn here.
 fn spread_of_angle(share: f64) -> f64 {
     -PI * PI / (PI * share / 4.0).tan().ln()
 }

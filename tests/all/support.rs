@@ -78,8 +78,8 @@ impl Case {
     }
 }
 
-/// The software adapter. A machine without one fails: the GPU engine is never left untested. So does one on which it is not
-/// the one that `TAUTLINE_TEST_ADAPTER` names, if that is set.
+/// The software adapter. A machine without one fails: the GPU engine is never left untested. So does one on which it is
+/// not the one that `TAUTLINE_TEST_ADAPTER` names, if that is set.
 pub(crate) fn software() -> Device {
     let device = Device::open(&AdapterChoice::Software).unwrap_or_else(|e| panic!("{e}"));
     if let Ok(name) = std::env::var("TAUTLINE_TEST_ADAPTER") {

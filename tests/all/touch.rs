@@ -256,8 +256,8 @@ fn the_step_that_is_wrong_is_named() {
     assert_eq!(violation(&m, &[[1.0, 0.0], [3.0, 0.0], [2.5, 1.0]]), Some((2, ViolationKind::SlipsThrough, 0)));
 }
 
-/// Along real coasts from vertex to vertex, resting on them, cutting corners and leaving them again, as planners' shortest
-/// paths do.
+/// Along real coasts from vertex to vertex, resting on them, cutting corners and leaving them again, as planners'
+/// shortest paths do.
 #[test]
 fn traces_along_real_coasts() {
     let scene = read_scene(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/aegean.geojson").as_ref()).unwrap();
@@ -299,7 +299,8 @@ fn steps_that_break_the_rules_are_named_at_every_scale() {
     }
 }
 
-/// Through walls a rope can turn more than half way round a wall's end, where the update's rules found events without end.
+/// Through walls a rope can turn more than half way round a wall's end, where the update's rules found events without
+/// end.
 #[test]
 fn a_trace_through_walls_comes_to_an_end() {
     let walls = [
@@ -323,8 +324,8 @@ fn a_trace_through_walls_comes_to_an_end() {
     assert_eq!((record.status, record.steps), (Status::Violation, 41));
 }
 
-/// Across a corner where four walls meet, again and again: a step that breaks the rules each time. However many there are, none
-/// is said to do so that need not.
+/// Across a corner where four walls meet, again and again: a step that breaks the rules each time. However many there
+/// are, none is said to do so that need not.
 #[test]
 fn tens_of_thousands_of_slips_hide_none() {
     let hub = [0.0, 0.0];

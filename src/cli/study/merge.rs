@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use tautline::session::{SessionError, merge};
 
-use super::run::conclude;
-use super::{BaseArgs, tell};
+use super::answer::conclude;
+use super::base::{BaseArgs, tell};
 use crate::cli::failure::Failure;
 use crate::cli::interrupt::{Guard, Last};
 

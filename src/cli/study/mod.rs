@@ -1,15 +1,17 @@
 //! `tautline study`.
 
+mod answer;
+mod base;
 mod merge;
 mod replay;
 mod run;
 mod show;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::anyhow;
 use clap::Subcommand;
-use tautline::session::{Folder, RunReport};
+use tautline::session::RunReport;
 use tautline::study::{EXAMPLE, Plan, Summary};
 
 use super::failure::Failure;
@@ -95,24 +97,4 @@ fn init(args: &InitArgs) -> Result<(), Failure> {
     }
     write_whole(&args.file, EXAMPLE.as_bytes())?;
     print(&format!("wrote {name}; run it with: tautline study run {name}\n"))
-}
-
-/// Where the study's files are.
-#[derive(Debug, clap::Args)]
-pub(crate) struct BaseArgs {
-    /// The folder from which the study's file names scene and traces, if it is another than when the study began
-    #[arg(long, value_name = "DIR")]
-    base: Option<PathBuf>,
-}
-
-impl BaseArgs {
-    /// The folder, if it is given.
-    fn folder(&self) -> Option<&Path> {
-        self.base.as_deref()
-    }
-}
-
-/// Says what there is to note of a study's folder.
-fn tell(folder: &Folder) {
-    folder.notes().iter().for_each(|note| say!("note: {note}"));
 }

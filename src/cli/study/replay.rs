@@ -11,7 +11,7 @@ use tautline::output::{EventWriter, check_output};
 use tautline::picture::Drawing;
 use tautline::session::look;
 
-use super::BaseArgs;
+use super::base::BaseArgs;
 use crate::cli::failure::Failure;
 use crate::cli::look::{Look, Target, write, write_whole};
 use crate::cli::paths::{keep_apart, place};

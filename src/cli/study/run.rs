@@ -6,19 +6,20 @@ use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use tautline::engine::{Engine, Job};
-use tautline::session::{Computed, Folder, RunReport, Saved, Session};
-use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, State, Stopped, Study, Summary, run as go};
+use tautline::session::{Computed, Folder, Saved, Session};
+use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, State, Stopped, Study, run as go};
 
-use super::{BaseArgs, show, tell};
+use super::answer::{conclude, duration, standing};
+use super::base::{BaseArgs, tell};
 use crate::cli::engine::{EngineArgs, of_studies};
 use crate::cli::failure::Failure;
 use crate::cli::input::{note, warn};
 use crate::cli::interrupt::{Guard, Last};
+use crate::cli::print;
 use crate::cli::progress::{Progress, with_progress};
 use crate::cli::summary::precision;
 use crate::cli::trade::TradeArgs;
 use crate::cli::words::plainly;
-use crate::cli::{print, print_json};
 
 #[derive(Debug, clap::Args)]
 #[command(mut_arg("engine", of_studies))]
@@ -195,8 +196,8 @@ struct Engines {
 }
 
 impl Engines {
-    /// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on purpose, and
-    /// `funnel` knows no contacts passed straight.
+    /// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on
+    /// purpose, and `funnel` knows no contacts passed straight.
     fn open(args: &EngineArgs, study: &Study) -> Result<Self, Failure> {
         let mut all = Engines { engines: Vec::new(), on: String::new() };
         for model in study.models() {
@@ -211,28 +212,6 @@ impl Engines {
             all.on = opened.on.to_string();
         }
         Ok(all)
-    }
-}
-
-/// Prints an answer as its file has it.
-pub(super) fn print_answer(summary: &Summary) -> Result<(), Failure> {
-    print_json(&serde_json::to_value(summary).map_err(|e| Failure::internal(e.into()))?)
-}
-
-/// Writes and prints the answer. Exit code 5 if it is not as certain as was asked for.
-pub(super) fn conclude(session: &Session, report: &RunReport, as_json: bool) -> Result<(), Failure> {
-    let summary = session.conclude(report)?;
-    if as_json {
-        print_answer(&summary)?;
-    } else {
-        print(&show::table(&summary, report.run()))?;
-        print(&format!("\nwritten to {}\n", session.folder().path().display()))?;
-    }
-    match (summary.study.until.relative_error, summary.stopped) {
-        (Some(wanted), Stopped::Complete | Stopped::Seconds) => Err(Failure::unmet(anyhow!(
-            "until.relative_error: the mean greatest length is not as certain as {wanted}; more traces would help"
-        ))),
-        _ => Ok(()),
     }
 }
 
@@ -263,8 +242,8 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     if let Some((traces, took)) = first.filter(|&(traces, _)| traces > 0) {
         let share = plan.run.count() as f64 / f64::from(args.shard.of()) / traces as f64;
         let all = Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX);
-        text += &format!("about {}, going by the first {traces} of the traces\n", show::duration(all));
-        if let Some(steps) = show::standing(&state.lock().unwrap_or_else(PoisonError::into_inner).summary(study)) {
+        text += &format!("about {}, going by the first {traces} of the traces\n", duration(all));
+        if let Some(steps) = standing(&state.lock().unwrap_or_else(PoisonError::into_inner).summary(study)) {
             text += &format!("{steps} in these\n");
         }
     }

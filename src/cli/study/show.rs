@@ -1,18 +1,13 @@
-//! `tautline study show`, and the table that all of its kin print.
+//! `tautline study show`.
 
-use std::fmt::Write;
 use std::path::PathBuf;
-use std::time::Duration;
 
-use tautline::session::{RunCost, is_answer, look};
-use tautline::study::{AtWalls, Estimate, Stopped, Summary, quantity};
+use tautline::session::{is_answer, look};
 
-use super::BaseArgs;
-use super::run::print_answer;
+use super::answer::{print_answer, table};
+use super::base::BaseArgs;
 use crate::cli::failure::Failure;
 use crate::cli::print;
-use crate::cli::trade;
-use crate::cli::words::{counted, grouped, short};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -33,144 +28,4 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         say!("note: {} does not hold this answer; `tautline study resume {shown}` writes it", file.display());
     }
     if args.json { print_answer(&summary) } else { print(&table(&summary, None)) }
-}
-
-/// What people want to see first.
-pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
-    let mut text = String::new();
-    let mut line = |text_of: std::fmt::Arguments<'_>| {
-        let _ = text.write_fmt(text_of);
-        text.push('\n');
-    };
-    let why = match summary.stopped {
-        Stopped::Complete => "all done",
-        Stopped::RelativeError => "as certain as was asked for",
-        Stopped::Seconds => "the time was over",
-        Stopped::Unfinished => "not finished",
-    };
-    let traces = counted(summary.traces, "trace", "traces");
-    let steps = counted(summary.steps, "step", "steps");
-    let events = counted(summary.events, "event", "events");
-    line(format_args!("{traces}, {steps}, {events}; {why}"));
-    if let Some(words) = standing(summary) {
-        line(format_args!("{words}"));
-    }
-    if let Some(run) = run {
-        // Those of earlier runs took other seconds.
-        let rate = run.traces as f64 / run.seconds;
-        line(format_args!(
-            "{} on {} threads' time: {} traces/s",
-            duration(Duration::from_secs_f64(run.seconds)),
-            run.threads,
-            short(rate)
-        ));
-    }
-    if let Some(traded) = &summary.traded {
-        line(format_args!("traded: {}", trade::words(summary.study.run.trade(), traded)));
-    }
-    if let Some(scene) = run.map(|run| &run.scene)
-        && let Some(&tried) = scene.remaining.iter().flatten().max()
-    {
-        line(format_args!("{} of {} wall ends tried", grouped(tried as u64), grouped(scene.vertices as u64)));
-    }
-    let confidence = 100.0 * summary.study.tallies.confidence;
-    line(format_args!(
-        "\n{:24}{:>10}  {:>24}{:>10}{:>10}{:>10}",
-        "a trace",
-        "mean",
-        format!("{confidence} % interval"),
-        "median",
-        "95 %",
-        "most"
-    ));
-    for scalar in &summary.scalars {
-        let quantile =
-            |share| scalar.quantiles.iter().find(|q| q.share == share).map_or(String::new(), |q| short(q.value.value));
-        let name = quantity(&scalar.name);
-        line(format_args!(
-            "{name:24}{:>10}  {:>24}{:>10}{:>10}{:>10}",
-            short(scalar.mean.value),
-            interval(&scalar.mean),
-            quantile(0.5),
-            quantile(0.95),
-            short(scalar.max)
-        ));
-    }
-    if !summary.survival.is_empty() {
-        line(format_args!("\nropes never longer than"));
-    }
-    for survival in &summary.survival {
-        if let Some(last) = survival.curve.last() {
-            line(format_args!(
-                "  {:>10}  {:>7}  {}",
-                short(survival.limit),
-                percent(last.share.value),
-                shares(&last.share)
-            ));
-        }
-    }
-    if !summary.obstacles.is_empty() {
-        line(format_args!(
-            "\nropes wound all the way round an obstacle at the end (the point about which that is counted)"
-        ));
-    }
-    for obstacle in summary.obstacles.iter().take(5) {
-        let at = format!("({}, {})", short(obstacle.at[0]), short(obstacle.at[1]));
-        let at = obstacle.label.as_ref().map_or(at.clone(), |label| format!("{label} {at}"));
-        line(format_args!("  {at:24}  {:>7}  {}", percent(obstacle.wound.value), shares(&obstacle.wound)));
-    }
-    if !summary.ropes.is_empty() {
-        line(format_args!("\nmost common ropes at the end"));
-    }
-    for rope in summary.ropes.iter().take(5) {
-        let turns = match rope.wraps.len() {
-            0 => "straight".to_owned(),
-            1 => "1 turn".to_owned(),
-            n => format!("{n} turns"),
-        };
-        let names: Vec<&str> = rope.labels.iter().flatten().map(String::as_str).collect();
-        let names = if names.is_empty() { String::new() } else { format!("  round {}", names.join(", ")) };
-        line(format_args!("  {turns:24}  {:>7}  {}{names}", percent(rope.share.value), shares(&rope.share)));
-    }
-    text
-}
-
-/// Which share of the steps stood still, and which met a wall; `None` if there are no steps.
-pub(super) fn standing(summary: &Summary) -> Option<String> {
-    let still = percent(summary.still?);
-    let met = match (summary.at_walls, summary.study.walk.at_walls()) {
-        (Some(share), Some(AtWalls::Redraw)) => format!(", {} were drawn again at walls", percent(share)),
-        (Some(share), Some(AtWalls::Reject)) => format!(", {} were not taken at walls", percent(share)),
-        (Some(share), Some(AtWalls::Reflect)) => format!(", {} were thrown back at walls", percent(share)),
-        _ => String::new(),
-    };
-    Some(format!("{still} of the steps stood still{met}"))
-}
-
-fn interval(estimate: &Estimate) -> String {
-    match (estimate.low, estimate.high) {
-        (Some(low), Some(high)) => format!("{} to {}", short(low), short(high)),
-        _ => "?".to_owned(),
-    }
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.2} %", 100.0 * share)
-}
-
-fn shares(estimate: &Estimate) -> String {
-    match (estimate.low, estimate.high) {
-        (Some(low), Some(high)) => format!("({} to {})", percent(low), percent(high)),
-        _ => String::new(),
-    }
-}
-
-/// A time in words.
-pub(super) fn duration(time: Duration) -> String {
-    let seconds = time.as_secs_f64();
-    match seconds {
-        s if s < 120.0 => format!("{} s", short(s)),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
 }

@@ -1,10 +1,10 @@
 //! The funnel of a crossing word, which follows the word as it grows and shrinks.
 //!
-//! The funnel is what the shortest paths from the anchor to both ends of the last edge crossed enclose once they part, at
-//! the apex: two chains, each bent inwards. They lie in one row, from the left end over the apex to the right end. A new
-//! edge keeps one end of the last; the path to the other parts from the row at the corner whose sector holds it, and
-//! everything beyond that corner leaves the row. Writing the new end down there overwrites one place of the row, so one
-//! place is all that has to be put back when the edge leaves the word again.
+//! The funnel is what the shortest paths from the anchor to both ends of the last edge crossed enclose once they part,
+//! at the apex: two chains, each bent inwards. They lie in one row, from the left end over the apex to the right end. A
+//! new edge keeps one end of the last; the path to the other parts from the row at the corner whose sector holds it,
+//! and everything beyond that corner leaves the row. Writing the new end down there overwrites one place of the row, so
+//! one place is all that has to be put back when the edge leaves the word again.
 
 use glam::DVec2;
 
@@ -87,8 +87,8 @@ impl Chains {
         &self.nodes[node as usize]
     }
 
-    /// Follows the word to `doors`, of which the first `kept` have stayed. O(doors that have changed), times the logarithm
-    /// of the corners passed.
+    /// Follows the word to `doors`, of which the first `kept` have stayed. O(doors that have changed), times the
+    /// logarithm of the corners passed.
     pub(super) fn follow(&mut self, mesh: &Mesh, doors: &[Door], kept: usize) {
         if let Some(&first) = self.undo.get(kept) {
             for undo in self.undo.drain(kept..).rev() {
@@ -172,8 +172,8 @@ impl Chains {
         self.row[(self.middle + i) as usize]
     }
 
-    /// The last corner of the shortest path to `a`, which is in the triangle behind the last door, or the anchor. A corner
-    /// on which `a` stands is none. O(log corners between the last tip in the row and this one).
+    /// The last corner of the shortest path to `a`, which is in the triangle behind the last door, or the anchor. A
+    /// corner on which `a` stands is none. O(log corners between the last tip in the row and this one).
     pub(super) fn tip(&mut self, a: DVec2) -> u32 {
         let apex = self.corner(self.apex);
         if apex.at == a {
@@ -186,8 +186,8 @@ impl Chains {
     /// The place from which the path goes straight to `p`, which lies behind the last door; searched for from the place
     /// `near` on, in strides that double.
     ///
-    /// The chains' edges, made longer, cut what is behind the last door into sectors, in the order of the row: on a chain
-    /// bent one way they do not meet again.
+    /// The chains' edges, made longer, cut what is behind the last door into sectors, in the order of the row: on a
+    /// chain bent one way they do not meet again.
     #[inline]
     fn sector(&self, p: DVec2, near: i32) -> i32 {
         let (mut low, mut high) = (self.low, self.high);
@@ -221,8 +221,8 @@ impl Chains {
         low
     }
 
-    /// Whether `p` lies left of the row's edge from place `i` to the next, seen from the anchor and made longer. On the line
-    /// it counts as on the apex's side: the path passes the edge's far end straight.
+    /// Whether `p` lies left of the row's edge from place `i` to the next, seen from the anchor and made longer. On the
+    /// line it counts as on the apex's side: the path passes the edge's far end straight.
     #[inline]
     fn is_left(&self, p: DVec2, i: i32) -> bool {
         let side = orient(self.corner(i).at, self.corner(i + 1).at, p);

@@ -47,7 +47,8 @@ impl Log {
         }
     }
 
-    /// Unwraps what the rope no longer touches and wraps what is new. O(contacts that are not the same nodes as before).
+    /// Unwraps what the rope no longer touches and wraps what is new. O(contacts that are not the same nodes as
+    /// before).
     fn change(&mut self, chains: &Chains, tip: u32, step: u32) {
         // A node that is still the same has the same path to it.
         let mut node = tip;

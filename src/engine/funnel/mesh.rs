@@ -71,8 +71,9 @@ impl Mesh {
         (self.names[triangle as usize][corner], self.triangles[triangle as usize].corners[corner])
     }
 
-    /// The edges of a triangle behind which `a` lies, edge i as bit i. A point on an edge belongs to the triangle left of the
-    /// edge as seen from its lower vertex to its higher, so every point that is no vertex is in one triangle only.
+    /// The edges of a triangle behind which `a` lies, edge i as bit i. A point on an edge belongs to the triangle left
+    /// of the edge as seen from its lower vertex to its higher, so every point that is no vertex is in one triangle
+    /// only.
     #[cold]
     pub(super) fn behind(&self, triangle: u32, a: TracePoint) -> usize {
         let is_inside = |edge| {

@@ -1,11 +1,11 @@
 //! Another method altogether: the shortest path homotopic to the trace, by triangulation, crossing word and funnel.
 //!
-//! The trace's crossing word over a triangulation of the vertices, with neighbouring crossings of one edge back and forth
-//! cancelled, names its homotopy class; the funnel algorithm finds the shortest path through the triangles that the
-//! word leads through (Hershberger and Snoeyink, "Computing minimum length paths of a given homotopy class", Comput.
-//! Geom. 4, 1994; Lee and Preparata, Networks 14, 1984). It shares the exact predicates with the ray method and nothing
-//! else, so the two check each other. It keeps no contacts passed straight: events may differ from the reference's, taut
-//! ropes may not.
+//! The trace's crossing word over a triangulation of the vertices, with neighbouring crossings of one edge back and
+//! forth cancelled, names its homotopy class; the funnel algorithm finds the shortest path through the triangles that
+//! the word leads through (Hershberger and Snoeyink, "Computing minimum length paths of a given homotopy class",
+//! Comput. Geom. 4, 1994; Lee and Preparata, Networks 14, 1984). It shares the exact predicates with the ray method and
+//! nothing else, so the two check each other. It keeps no contacts passed straight: events may differ from the
+//! reference's, taut ropes may not.
 
 mod chains;
 mod drag;
@@ -38,8 +38,8 @@ pub static FUNNEL: EngineKind = EngineKind {
 
 /// The engine that keeps the funnel of each trace's crossing word up to date, on all cores.
 ///
-/// A step costs O(1 + edges crossed) times the logarithm of the corners that the funnel's ends and the rope's last corner
-/// pass over. The triangulation is made once, and anew only for traces that lead far outside the scene.
+/// A step costs O(1 + edges crossed) times the logarithm of the corners that the funnel's ends and the rope's last
+/// corner pass over. The triangulation is made once, and anew only for traces that lead far outside the scene.
 pub struct Funnel {
     model: Arc<Model>,
     mesh: Option<Mesh>,
@@ -55,8 +55,8 @@ impl Funnel {
     /// The same engine for final ropes only: it follows the crossing words alone and makes each trace's funnel once, at
     /// its end.
     ///
-    /// A record's `length`, `depth`, `wraps` and `pull` are those of the engine that sees every step. Its `max_length` and
-    /// `max_depth` are the final rope's too, and its events wrap the final rope, all in the last step.
+    /// A record's `length`, `depth`, `wraps` and `pull` are those of the engine that sees every step. Its `max_length`
+    /// and `max_depth` are the final rope's too, and its events wrap the final rope, all in the last step.
     ///
     /// ```
     /// use std::sync::Arc;

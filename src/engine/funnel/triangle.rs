@@ -7,7 +7,8 @@ use crate::geometry::orient;
 /// The corner, or edge, after each of a triangle's three.
 pub(super) const NEXT: [usize; 3] = [1, 2, 0];
 
-/// The bit of [`Triangle::behind`] that says that a point lies too close to an edge to tell its side by rounded numbers.
+/// The bit of [`Triangle::behind`] that says that a point lies too close to an edge to tell its side by rounded
+/// numbers.
 pub(super) const DOUBT: usize = 8;
 
 /// An edge as seen from inside one of the two triangles that it parts.
@@ -59,13 +60,13 @@ impl Triangle {
 
     /// The edges behind which `a` lies, edge i as bit i, and [`DOUBT`] where rounding could matter.
     ///
-    /// With u = 2^-53, let x and y be the two computed products of an edge, and X and Y the true ones. Each is off by the
-    /// rounding of two differences and a product, less than 3.1 u of it. The point is surely inside of the edge, X > Y,
-    /// in either of two cases. Where x and y have different signs (or one is 0), X and Y have them too, since rounded
-    /// differences and products keep their signs, and x > y is enough. Else |x| + |y| = |x + y|, and x - y > 3.2 u |x + y|
-    /// is enough. The test asks for x - y > 4 u |x + y| with both sides rounded, which is more: their roundings change
-    /// them by a few u of themselves. Behind the edge it is the same with x and y exchanged. Within the limits of
-    /// coordinates nothing over- or underflows.
+    /// With u = 2^-53, let x and y be the two computed products of an edge, and X and Y the true ones. Each is off by
+    /// the rounding of two differences and a product, less than 3.1 u of it. The point is surely inside of the edge,
+    /// X > Y, in either of two cases. Where x and y have different signs (or one is 0), X and Y have them too, since
+    /// rounded differences and products keep their signs, and x > y is enough. Else |x| + |y| = |x + y|, and x - y >
+    /// 3.2 u |x + y| is enough. The test asks for x - y > 4 u |x + y| with both sides rounded, which is more: their
+    /// roundings change them by a few u of themselves. Behind the edge it is the same with x and y exchanged. Within
+    /// the limits of coordinates nothing over- or underflows.
     #[inline]
     pub(super) fn behind(&self, a: DVec2) -> usize {
         const BOUND: f64 = 4.0 / (1u64 << 53) as f64;

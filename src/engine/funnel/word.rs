@@ -5,17 +5,17 @@ use super::triangle::{DOUBT, Door, NEXT};
 use crate::geometry::{TracePoint, orient_step};
 use crate::trace::SettledTrace;
 
-/// By the set of edges behind which a leg's goal lies: a corner, and the edge through which the leg leaves when it passes
-/// that corner on its left, and the edge else. Behind one edge, it leaves through that. Behind two, it passes the corner
-/// between them, and leaves through the edge that ends at it or the one that starts there.
+/// By the set of edges behind which a leg's goal lies: a corner, and the edge through which the leg leaves when it
+/// passes that corner on its left, and the edge else. Behind one edge, it leaves through that. Behind two, it passes
+/// the corner between them, and leaves through the edge that ends at it or the one that starts there.
 const EXITS: [(usize, [usize; 2]); 7] =
     [(0, [0, 0]), (0, [0, 0]), (0, [1, 1]), (1, [1, 0]), (0, [2, 2]), (0, [0, 2]), (2, [2, 1])];
 
 /// The reduced word from the anchor to the free end, and the triangle in which the free end is.
 #[derive(Debug, Default)]
 pub(super) struct Word {
-    /// Each edge crossed, as seen from the triangle into which it leads; the last one's is the free end's. Before the first
-    /// comes one that is none, behind the last what is left over.
+    /// Each edge crossed, as seen from the triangle into which it leads; the last one's is the free end's. Before the
+    /// first comes one that is none, behind the last what is left over.
     doors: Vec<Door>,
     length: usize,
     triangle: u32,
@@ -41,7 +41,8 @@ impl Word {
         std::mem::replace(&mut self.kept, self.length)
     }
 
-    /// Follows the free end from point `i - 1` of `trace`, where it is, to point `i`. Says whether it has left its triangle.
+    /// Follows the free end from point `i - 1` of `trace`, where it is, to point `i`. Says whether it has left its
+    /// triangle.
     #[inline(always)]
     pub(super) fn follow(&mut self, mesh: &Mesh, trace: &SettledTrace, i: usize) -> bool {
         // Where the point lies strictly on one side of an edge its hair does not matter.
@@ -59,9 +60,9 @@ impl Word {
         let (corner, exits) = EXITS[behind];
         let mut entry = self.pass(mesh, exits[usize::from(is_left(self.triangle, corner))]);
         loop {
-            // The leg's line leaves a triangle through one of the two edges by which it did not come: the one that ends at
-            // the corner between them when that lies on its left, else the one that starts there. Asked before it is known
-            // whether the leg goes so far, since a processor finds out both at the same time.
+            // The leg's line leaves a triangle through one of the two edges by which it did not come: the one that ends
+            // at the corner between them when that lies on its left, else the one that starts there. Asked before it is
+            // known whether the leg goes so far, since a processor finds out both at the same time.
             let ends = NEXT[entry];
             let starts = NEXT[ends];
             let exit = [starts, ends][usize::from(is_left(self.triangle, starts))];

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{GPU, rounds};
+use super::rounds::{self, NAME};
 use crate::candidates::{LISTS_BUDGET, Lists};
 use crate::engine::windows::Windows;
 use crate::engine::{Engine, EngineError, Job, WINDOW};
@@ -76,7 +76,7 @@ impl Gpu {
 
 impl Engine for Gpu {
     fn name(&self) -> &'static str {
-        GPU.name
+        NAME
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {

@@ -15,8 +15,8 @@ use crate::rope::{EventKind, Side, TraceRecord};
 use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
 
-/// How long the hair is by which a point that stands on a vertex is displaced, in the frame's unit: 2^-14. The turn that
-/// comes with it, 2^-5 of that, is still 32 times what f32 rounds away across the whole scene.
+/// How long the hair is by which a point that stands on a vertex is displaced, in the frame's unit: 2^-14. The turn
+/// that comes with it, 2^-5 of that, is still 32 times what f32 rounds away across the whole scene.
 const HAIR: f64 = 1.0 / (1 << 14) as f64;
 
 /// How far a trace has come, and the window that was asked for last.
@@ -73,8 +73,8 @@ impl Player for Hasty {
         let (model, frame, rope) = (lists.model(), lists.frame(), &self.progress.rope);
         let (o, contact) = (rope.pivot(), rope.contacts().last());
         let pivot = model.pivot(contact.map(|c| c.vertex));
-        // Where a trace crosses walls, the rope can meet anything. Elsewhere lists are made at once, since all answers have
-        // to come from the device.
+        // Where a trace crosses walls, the rope can meet anything. Elsewhere lists are made at once, since all answers
+        // have to come from the device.
         let list = shared.job.time(Phase::Queries, || match trace.breaks_rules() {
             true => Some(Arc::clone(lists.all())),
             false => lists.of(pivot, f64::INFINITY),
@@ -183,8 +183,8 @@ impl Hasty {
         (self.turned, self.wraps) = (None, 0);
     }
 
-    /// Wraps the rope round a vertex on the leg from where it stands. A leg wraps no vertex twice: where rounding has it go
-    /// round in circles, the rest of the leg is given up.
+    /// Wraps the rope round a vertex on the leg from where it stands. A leg wraps no vertex twice: where rounding has
+    /// it go round in circles, the rest of the leg is given up.
     fn wrap(&mut self, model: &Model, trace: &SettledTrace, vertex: u32, side: Side) {
         let Progress { rope, at, .. } = &mut self.progress;
         let wrapped = &rope.contacts()[rope.contacts().len() - self.wraps..];
@@ -199,8 +199,8 @@ impl Hasty {
         self.wraps += 1;
     }
 
-    /// Unwraps the pivot on the leg from where the rope stands. The rope turns one way on a leg, so what it wraps there it
-    /// does not unwrap there; so a leg comes to an end.
+    /// Unwraps the pivot on the leg from where the rope stands. The rope turns one way on a leg, so what it wraps there
+    /// it does not unwrap there; so a leg comes to an end.
     fn unwrap(&mut self, trace: &SettledTrace, to: Side) -> Result<(), Astray> {
         let (from, prior) = (self.progress.rope.pivot(), self.progress.rope.prior());
         let contact = self.progress.rope.pop().filter(|_| self.wraps == 0).ok_or(Astray)?;

@@ -1,5 +1,5 @@
-//! The engine of the product, in two precisions: a compute shader [finds](certified) candidates among which the CPU decides
-//! exactly, or [decides](fast) alone. In both, traces go round after round between device and CPU.
+//! The engine of the product, in two precisions: a compute shader [finds](certified) candidates among which the CPU
+//! decides exactly, or [decides](fast) alone. In both, traces go round after round between device and CPU.
 
 mod certified;
 mod deciding;
@@ -7,6 +7,7 @@ mod fast;
 mod finding;
 mod rounds;
 
+use self::rounds::NAME;
 use super::table::Open;
 use super::{EngineKind, Precision, Promise};
 
@@ -15,7 +16,7 @@ pub use fast::FastGpu;
 
 /// The product.
 pub static GPU: EngineKind = EngineKind {
-    name: "gpu",
+    name: NAME,
     about: "A compute shader finds candidates for many traces at once, the CPU decides exactly",
     precisions: &[Precision::Certified, Precision::Fast],
     asks: true,

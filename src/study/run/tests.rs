@@ -6,8 +6,9 @@ use crate::study::opened::ANSWERS;
 use crate::study::{Plan, merge};
 
 /// Two anchors, and blocks of 7 traces of which the last is smaller.
-const STUDY: &str = "[scene]\nbuilt_in = \"rooms\"\nanchor = { sample = 2 }\n[walk]\nkind = \"persistent\"\nstep = 0.4\nsteps = 60\n\
-    start = \"visible\"\n[run]\ntraces = 40\nblock = 7\n[tallies]\nlimits = [2.0, 9.0]\n";
+const STUDY: &str = "[scene]\nbuilt_in = \"rooms\"\nanchor = { sample = 2 }\n\
+    [walk]\nkind = \"persistent\"\nstep = 0.4\nsteps = 60\nstart = \"visible\"\n\
+    [run]\ntraces = 40\nblock = 7\n[tallies]\nlimits = [2.0, 9.0]\n";
 
 fn study() -> Study {
     Study::open(Plan::parse(STUDY).unwrap(), Path::new("")).unwrap()
@@ -17,8 +18,8 @@ fn engines(study: &Study) -> Vec<Box<dyn Engine>> {
     study.models().iter().map(|model| Box::new(Cpu::new(model.clone())) as _).collect()
 }
 
-/// Runs a shard to its end in groups of at most `size` traces, and stops after every one of them: the state is saved, and read for
-/// the next. Tells how many traces each group had that are in the state.
+/// Runs a shard to its end in groups of at most `size` traces, and stops after every one of them: the state is saved,
+/// and read for the next. Tells how many traces each group had that are in the state.
 fn stopped_after_each(study: &Study, shard: Shard, size: u64) -> (State, Vec<TraceRecord>, Vec<usize>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("state.bin");

@@ -8,8 +8,8 @@ use super::merge::Merge;
 /// Over the blocks: the sums of how much of something a block has (`sum`), of its square, and of its product with the
 /// block's size. All are whole numbers, so that the order of the blocks does not matter.
 ///
-/// Steps of one trace say nearly the same, blocks say nothing of each other: so the error of a ratio of sums comes from how
-/// it differs from block to block (batch means).
+/// Steps of one trace say nearly the same, blocks say nothing of each other: so the error of a ratio of sums comes from
+/// how it differs from block to block (batch means).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Batches {
     pub sum: u64,
@@ -34,8 +34,9 @@ impl Batches {
         if sizes.blocks < 2 {
             return (ratio, None);
         }
-        // The sums of the squares of (sum - ratio * size). First with the whole part of the ratio, in whole numbers: else what is
-        // left of large numbers that are nearly alike is rounding. The products may wrap on the way; what they come to has room.
+        // The sums of the squares of (sum - ratio * size). First with the whole part of the ratio, in whole numbers:
+        // else what is left of large numbers that are nearly alike is rounding. The products may wrap on the way; what
+        // they come to has room.
         let whole = u128::from(self.sum.checked_div(sizes.sum).unwrap_or(0));
         let part = (u128::from(self.sum) - whole * u128::from(sizes.sum)) as f64 / size;
         let products = self.products.wrapping_sub(whole.wrapping_mul(sizes.squares));
@@ -96,7 +97,8 @@ mod tests {
         let (ratio, estimated) = batches.ratio(&sizes);
         assert!((ratio - mean).abs() < 1e-15 && (estimated.unwrap() - error).abs() < 1e-15);
     }
-    /// Sums of some 2^40 that are alike but for a unit: of their squares, the difference is beyond the digits of an f64.
+    /// Sums of some 2^40 that are alike but for a unit: of their squares, the difference is beyond the digits of an
+    /// f64.
     #[test]
     fn nearly_equal_blocks_have_nearly_no_error() {
         let of = |sums: &[(u64, u64)]| {

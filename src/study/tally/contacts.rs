@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use super::TallyPlan;
 use super::batches::Batches;
-use super::block::{Size, Traced};
 use super::merge::Merge;
 use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
+use super::traced::{Size, Traced};
 use crate::rope::Lasting;
 use crate::study::estimate::Estimate;
 use crate::study::plan_error::PlanError;
@@ -104,6 +104,7 @@ pub struct Contact {
     pub label: Option<String>,
     /// The number of wraps about it per trace.
     pub wraps: Estimate,
-    /// The share of all steps after which the rope has a contact with it, however many: a rope wound round it counts once.
+    /// The share of all steps after which the rope has a contact with it, however many: a rope wound round it counts
+    /// once.
     pub share: Estimate,
 }

@@ -6,11 +6,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::TallyPlan;
-use super::block::{Size, Traced};
 use super::scalars::{LENGTH, MAX_LENGTH, Quantity};
 use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
+use super::traced::{Size, Traced};
 use crate::geometry::number;
 use crate::study::estimate::Estimate;
 use crate::study::plan_error::PlanError;
@@ -44,7 +44,8 @@ impl Tally for Histograms {
         let least = setting.unit();
         if width < least {
             return Err(PlanError::new(format!(
-                "tallies.bin: {} is too narrow for lengths in this scene; give at least {least:e}, or 0 for a usual width",
+                "tallies.bin: {} is too narrow for lengths in this scene; give at least {least:e}, or 0 for a \
+                 usual width",
                 number(width)
             )));
         }
@@ -87,7 +88,8 @@ pub struct Histogram {
 /// A bin of a histogram.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Bin {
-    /// Its number, counted from 0: bin i holds the lengths from i times `width` up to i + 1 times `width`, the latter left out.
+    /// Its number, counted from 0: bin i holds the lengths from i times `width` up to i + 1 times `width`, the latter
+    /// left out.
     pub bin: u64,
     /// How many traces are in it.
     pub count: u64,

@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 
 use super::TallyPlan;
 use super::batches::{Batches, Sizes};
-use super::block::{Size, Traced};
 use super::merge::Merge;
 use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
+use super::traced::{Size, Traced};
 use crate::rope::Lasting;
 use crate::study::estimate::Estimate;
 use crate::study::plan_error::PlanError;
@@ -194,9 +194,9 @@ pub struct Map {
 /// A cell of the map.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Cell {
-    /// Its number: column + columns * row. Both count from 0, columns from the lowest x and rows from the lowest y, also where
-    /// y points down. The cell holds the points from low + cell * (column, row) up to a cell further in x and in y; what lies
-    /// on the highest x or y belongs to the last column or row.
+    /// Its number: column + columns * row. Both count from 0, columns from the lowest x and rows from the lowest y,
+    /// also where y points down. The cell holds the points from low + cell * (column, row) up to a cell further in x
+    /// and in y; what lies on the highest x or y belongs to the last column or row.
     pub cell: u64,
     /// How often a free end was seen in it: it is looked at every `study.tallies.map_every` steps.
     pub visits: u64,

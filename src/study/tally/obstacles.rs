@@ -6,11 +6,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::TallyPlan;
-use super::block::{Size, Traced};
 use super::merge::Merge;
 use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
+use super::traced::{Size, Traced};
 use super::winding::Islands;
 use crate::study::estimate::Estimate;
 use crate::study::plan_error::PlanError;

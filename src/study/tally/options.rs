@@ -3,21 +3,26 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-macro_rules! options {
-    (options { $($(#[$doc:meta])* $name:ident: $Type:ty = $usual:expr;)* } tallies { $($_:tt)* }) => {
-        /// What is counted.
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields, default)]
-        pub struct TallyPlan {
-            $($(#[$doc])* pub $name: $Type,)*
-        }
-
-        impl Default for TallyPlan {
-            fn default() -> Self {
-                TallyPlan { $($name: $usual,)* }
-            }
-        }
-    };
+/// What is counted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TallyPlan {
+    /// How often intervals are to hold the truth, between 0 and 1.
+    pub confidence: f64,
+    /// Rope lengths: for each, when the rope first becomes longer (the survival curve).
+    pub limits: Vec<f64>,
+    /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's size.
+    pub bin: f64,
+    /// How many cells the longer side of the map of the plane has; they are squares. 0 for no map.
+    pub map: u32,
+    /// After how many steps the map looks at the free end again: neighbouring steps say nearly the same.
+    pub map_every: u32,
+    /// How many of the most common taut ropes are reported.
+    pub ropes: u32,
 }
 
-super::table!(options);
+impl Default for TallyPlan {
+    fn default() -> Self {
+        TallyPlan { confidence: 0.95, limits: Vec::new(), bin: 0.0, map: 64, map_every: 8, ropes: 10 }
+    }
+}

@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::TallyPlan;
-use super::block::{Size, Traced};
 use super::merge::Merge;
 use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
+use super::traced::{Size, Traced};
 use crate::rope::Side;
 use crate::study::estimate::Estimate;
 use crate::study::plan_error::PlanError;
@@ -22,8 +22,9 @@ const ROPES_A_BLOCK: usize = 256;
 /// A taut rope: its anchor's number, then for each contact twice the wall end's number, and one more if it lies right.
 type Key = Vec<u32>;
 
-/// Counts of ropes. In each block the most common ropes are counted and the others left out, so that memory grows slowly: by
-/// no more than these a block, and in fact by those that were not common before. What may be missing from a count is known.
+/// Counts of ropes. In each block the most common ropes are counted and the others left out, so that memory grows
+/// slowly: by no more than these a block, and in fact by those that were not common before. What may be missing from a
+/// count is known.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Common {
     counts: BTreeMap<Key, u64>,
@@ -131,8 +132,8 @@ pub struct CommonRope {
     pub anchor: [f64; 2],
     /// Its turns, from the anchor: the places of the wall ends at which it bends.
     pub wraps: Vec<[f64; 2]>,
-    /// On which side of the rope the wall end of each turn lies, seen from the anchor: `left` or `right`, as a picture of
-    /// the scene shows it.
+    /// On which side of the rope the wall end of each turn lies, seen from the anchor: `left` or `right`, as a picture
+    /// of the scene shows it.
     pub sides: Vec<String>,
     /// What the scene's file calls the things there; left out where it calls nothing anything.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

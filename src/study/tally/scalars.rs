@@ -6,12 +6,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::TallyPlan;
-use super::block::{Size, Traced};
 use super::lengths;
 use super::merge::Merge;
 use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
+use super::traced::{Size, Traced};
 use crate::rope::{EventKind, TraceRecord};
 use crate::study::estimate::Estimate;
 use crate::study::moments::Moments;
@@ -46,8 +46,8 @@ const ALL: [Quantity; 6] = [
 /// Which quantiles are given.
 const QUANTILES: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99];
 
-/// What a scalar or a histogram of this name is about, in the words of every table, picture and page: those of the glossary
-/// in `docs/studies.md`.
+/// What a scalar or a histogram of this name is about, in the words of every table, picture and page: those of the
+/// glossary in `docs/studies.md`.
 ///
 /// ```
 /// assert_eq!(tautline::study::quantity("max_depth"), "greatest depth");
@@ -195,8 +195,8 @@ pub struct Scalar {
     pub min: f64,
     /// The greatest.
     pub max: f64,
-    /// Quantiles. Those of counts are exact; those of lengths are the middles of classes that are at most a 128th of the
-    /// lengths in them wide, so within 0.4 %.
+    /// Quantiles. Those of counts are exact; those of lengths are the middles of classes that are at most a 128th of
+    /// the lengths in them wide, so within 0.4 %.
     pub quantiles: Vec<Quantile>,
 }
 

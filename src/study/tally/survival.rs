@@ -6,10 +6,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::TallyPlan;
-use super::block::{Size, Traced};
 use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
+use super::traced::{Size, Traced};
 use crate::geometry::number;
 use crate::rope::Lasting;
 use crate::study::estimate::Estimate;

@@ -5,10 +5,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::TallyPlan;
-use super::block::{Size, Traced};
 use super::merge::Merge;
 use super::setting::Setting;
 use super::totals::Totals;
+use super::traced::{Size, Traced};
 use crate::study::plan_error::PlanError;
 
 /// Something that is counted of every trace and told in the summary. The value itself is what all blocks have in

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::batches::Sizes;
-use super::block::{Size, Traced};
 use super::merge::Merge;
+use super::traced::{Size, Traced};
 use crate::trade::Traded;
 
 /// Sums over all traces of some blocks.

@@ -6,8 +6,8 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::kind::Stride;
 use super::room::Room;
+use super::stride::Stride;
 use crate::geometry::{higher, lower, opposite, orient, point, same_side};
 use crate::study::random::Random;
 
@@ -65,8 +65,8 @@ pub(super) fn meet(
     }
 }
 
-/// Where a step from `here` to `next` ends that is thrown back by whatever it meets. `None` if no straight way leads there:
-/// one could go the whole way back as well, so staying leaves a walk on the plane as uniform as it is.
+/// Where a step from `here` to `next` ends that is thrown back by whatever it meets. `None` if no straight way leads
+/// there: one could go the whole way back as well, so staying leaves a walk on the plane as uniform as it is.
 fn reflect(room: &Room, here: DVec2, next: DVec2, stride: &mut impl Stride) -> Option<DVec2> {
     let (mut from, mut to, mut last) = (here, next, None);
     for _ in 0..MIRRORS {
@@ -100,7 +100,8 @@ enum Mirror {
     Highest(usize),
 }
 
-/// The first wall or side of the box that the way from `from` to `to` meets, but for the `last` met, at which it starts.
+/// The first wall or side of the box that the way from `from` to `to` meets, but for the `last` met, at which it
+/// starts.
 fn first_met(room: &Room, from: DVec2, to: DVec2, last: Option<Mirror>) -> Option<Met> {
     let mut first: Option<Met> = None;
     let mut keep = |met: Met| {

@@ -1,8 +1,9 @@
 //! Along which straight lines a shortest path can go from wall end to wall end, and on which sides it passes them.
 //!
-//! A shortest path bends only at wall ends, round the walls that meet there: those all lie on one side of it, which then is
-//! the side of the bend. So a path is a way through pairs of a wall end and a side, and a line belongs to it only if all
-//! walls at both its ends lie on the sides named, or along it. This rules out slipping through between walls that meet.
+//! A shortest path bends only at wall ends, round the walls that meet there: those all lie on one side of it, which
+//! then is the side of the bend. So a path is a way through pairs of a wall end and a side, and a line belongs to it
+//! only if all walls at both its ends lie on the sides named, or along it. This rules out slipping through between
+//! walls that meet.
 
 use std::ops::ControlFlow::{Break, Continue};
 use std::sync::{Arc, OnceLock};

@@ -8,6 +8,7 @@ mod paths;
 mod persistent;
 mod room;
 mod start;
+mod steps;
 mod stride;
 mod uniform;
 mod waypoints;
@@ -104,8 +105,9 @@ impl WalkPlan {
 
 /// Random traces in a model's scene. Trace n of a seed is the same on every machine, whatever else is drawn.
 ///
-/// No step leaves the scene's bounding box, the smallest that holds all walls and the anchor, and none breaks the rules of
-/// ropes: [`SettledTrace::violation`] is `None`. No step of a walk touches a wall; a drive along waypoints passes wall ends.
+/// No step leaves the scene's bounding box, the smallest that holds all walls and the anchor, and none breaks the rules
+/// of ropes: [`SettledTrace::violation`] is `None`. No step of a walk touches a wall; a drive along waypoints passes
+/// wall ends.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -128,14 +130,14 @@ pub struct Walks {
 }
 
 impl Walks {
-    /// Makes ready to draw the traces of `plan`. O(walls); O(walls log walls) where starts are drawn or paths are searched
-    /// for.
+    /// Makes ready to draw the traces of `plan`. O(walls); O(walls log walls) where starts are drawn or paths are
+    /// searched for.
     ///
     /// # Errors
     ///
-    /// A step that is not finite and above 0 or is wider than the scene, steps that are none or more than a trace can have, a turn outside of 0 to pi, a
-    /// scene without room, coordinates that cannot be triangulated where that is needed; and given traces, which are not
-    /// drawn.
+    /// A step that is not finite and above 0 or is wider than the scene, steps that are none or more than a trace can
+    /// have, a turn outside of 0 to pi, a scene without room, coordinates that cannot be triangulated where that is
+    /// needed; and given traces, which are not drawn.
     pub fn new(model: Arc<Model>, plan: &WalkPlan, seed: u64) -> Result<Walks, PlanError> {
         let Some(kind) = plan.kind() else {
             return Err(PlanError::new("walk.kind: given traces are read, not drawn; give another kind to draw some"));
@@ -144,15 +146,16 @@ impl Walks {
         let room = Room::new(model);
         if !(room.high - room.low).cmpgt(glam::DVec2::ZERO).all() {
             return Err(PlanError::new(
-                "scene: the box around all walls and the anchor has no area, so there is no room to walk in; add walls, or \
-                 move the anchor off the line on which they lie",
+                "scene: the box around all walls and the anchor has no area, so there is no room to walk in; add \
+                 walls, or move the anchor off the line on which they lie",
             ));
         }
         let size = room.high - room.low;
         let step = kind.step();
         if step > size.max_element() {
             return Err(PlanError::new(format!(
-                "walk.step: a step of {} is wider than the scene, which is {} by {}; give a shorter one, in the scene's unit",
+                "walk.step: a step of {} is wider than the scene, which is {} by {}; give a shorter one, in the \
+                 scene's unit",
                 number(step),
                 number(size.x),
                 number(size.y)
@@ -163,7 +166,8 @@ impl Walks {
         Ok(Walks { room, drawer, starts, seed })
     }
 
-    /// Trace `number`, ready to be evaluated. O(steps) where walls are far, and what [`Model::is_clear`] costs near them.
+    /// Trace `number`, ready to be evaluated. O(steps) where walls are far, and what [`Model::is_clear`] costs near
+    /// them.
     pub fn trace(&self, number: u64) -> SettledTrace {
         let (model, dice) = (&self.room.model, Dice { seed: self.seed, trace: number });
         let start = self.starts.draw(model, &mut dice.of(Purpose::Start));

@@ -18,8 +18,8 @@ pub(super) struct Paths {
     links: Links,
 }
 
-/// Memory that searches share, one after the other. A state is a wall end with the side on which its walls lie: twice the
-/// vertex, and 1 more for the right; the last one is the goal.
+/// Memory that searches share, one after the other. A state is a wall end with the side on which its walls lie: twice
+/// the vertex, and 1 more for the right; the last one is the goal.
 #[derive(Default)]
 pub(super) struct Search {
     scratch: Scratch,
@@ -31,7 +31,8 @@ pub(super) struct Search {
     reached: Vec<u32>,
     /// On which sides one can leave each vertex straight to the goal.
     leaves: Vec<Sides>,
-    /// States by the length of a path through them, at least. Lengths are compared by their bits, as they are not negative.
+    /// States by the length of a path through them, at least. Lengths are compared by their bits, as they are not
+    /// negative.
     open: BinaryHeap<Reverse<(u64, u32)>>,
 }
 
@@ -40,11 +41,11 @@ impl Paths {
         Paths { model: model.clone(), links: Links::new(model, visibility) }
     }
 
-    /// The shortest path from one point to another: both, with the wall ends between at which it bends, and perhaps some that
-    /// it passes straight. `None` if there is none.
+    /// The shortest path from one point to another: both, with the wall ends between at which it bends, and perhaps
+    /// some that it passes straight. `None` if there is none.
     ///
-    /// By A* (Hart, Nilsson and Raphael, IEEE Trans. Syst. Sci. Cybern. 4, 1968) over the tangent visibility graph, whose
-    /// links are made when they are needed first.
+    /// By A* (Hart, Nilsson and Raphael, IEEE Trans. Syst. Sci. Cybern. 4, 1968) over the tangent visibility graph,
+    /// whose links are made when they are needed first.
     pub(super) fn find(&self, from: From, to: Place, search: &mut Search) -> Option<Vec<DVec2>> {
         let start = from.at(&self.model);
         if self.model.is_clear(start, to.at) {

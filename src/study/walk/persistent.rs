@@ -8,9 +8,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::at_walls::AtWalls;
-use super::kind::{Dice, Draw, Kind, Stride};
+use super::kind::{Dice, Draw, Kind};
 use super::room::Room;
 use super::start::{From, Start};
+use super::stride::Stride;
 use crate::geometry::number;
 use crate::study::plan_error::PlanError;
 use crate::study::random::{Purpose, Random};
@@ -19,8 +20,8 @@ use crate::study::random::{Purpose, Random};
 /// before a wall for good.
 pub(super) const LEAST: f64 = 0.1;
 
-/// How many turns are drawn at once, so that several are made in one instruction. What a step that meets a wall draws depends
-/// on it, and so do all traces.
+/// How many turns are drawn at once, so that several are made in one instruction. What a step that meets a wall draws
+/// depends on it, and so do all traces.
 pub(super) const AHEAD: usize = 16;
 
 /// By what the turn widens with each step drawn in vain.
@@ -124,8 +125,8 @@ impl Persistent {
     /// The step along the heading turned by `turn`, a vector one long.
     #[inline]
     fn along(&mut self, turn: DVec2) -> DVec2 {
-        // Half a step of Newton's method for the length of 1, so that roundings do not add up; by the length that the heading
-        // had before, since that of the heading itself would have to be waited for.
+        // Half a step of Newton's method for the length of 1, so that roundings do not add up; by the length that the
+        // heading had before, since that of the heading itself would have to be waited for.
         self.turned = turn.rotate(self.heading) * (1.25 - 0.25 * self.before);
         self.step * self.turned
     }
@@ -156,8 +157,9 @@ impl WithSimd for Directions {
     }
 }
 
-/// The direction at that angle, from -pi to pi, to ten digits or so, as a vector one long: the angle itself is as coarse. Made
-/// of products and sums alone, in a fixed order, so it is the same on every machine; the standard library's sines are not.
+/// The direction at that angle, from -pi to pi, to ten digits or so, as a vector one long: the angle itself is as
+/// coarse. Made of products and sums alone, in a fixed order, so it is the same on every machine; the standard
+/// library's sines are not.
 #[inline(always)]
 fn direction(angle: f64) -> DVec2 {
     let x = 0.25 * angle;

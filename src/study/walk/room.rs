@@ -26,20 +26,21 @@ impl Room {
         (p.x >= self.low.x) & (p.x <= self.high.x) & (p.y >= self.low.y) & (p.y <= self.high.y)
     }
 
-    /// Whether the free end can be dragged from `a`, a point of the room, straight to `b` without touching a wall or leaving
-    /// the box.
+    /// Whether the free end can be dragged from `a`, a point of the room, straight to `b` without touching a wall or
+    /// leaving the box.
     #[inline]
     pub(super) fn is_open(&self, a: DVec2, b: DVec2) -> bool {
         self.holds(b) && self.model.is_clear(a, b)
     }
 }
 
-/// A box around the free end that no wall meets, while there is one: every step within it is open, which is seen at once.
+/// A box around the free end that no wall meets, while there is one: every step within it is open, which is seen at
+/// once.
 pub(super) struct Clearing {
     low: DVec2,
     high: DVec2,
-    /// How far the next box that is tried reaches on either side, in steps: twice as far as the last one that was free, half
-    /// as far as the last that was not.
+    /// How far the next box that is tried reaches on either side, in steps: twice as far as the last one that was free,
+    /// half as far as the last that was not.
     reach: f64,
     /// How many steps are looked at one by one before another box is tried.
     pause: u32,

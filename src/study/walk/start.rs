@@ -22,8 +22,8 @@ pub enum Start {
 }
 
 /// What is wrong with a scene that cannot be triangulated.
-pub(super) const TOO_WIDE: &str = "the scene's coordinates cannot be triangulated: in magnitude the smallest that is not 0 \
-    and the largest must lie within 140 powers of two of each other";
+pub(super) const TOO_WIDE: &str = "the scene's coordinates cannot be triangulated: in magnitude the smallest that \
+    is not 0 and the largest must lie within 140 powers of two of each other";
 
 /// From where traces start.
 pub(super) enum Starts {

@@ -233,7 +233,8 @@ fn errors_say_what_would_be_right() {
     assert!(error(wide, drive).contains("cannot be triangulated"));
 }
 
-/// What other versions drew, by which stored studies go on: where this fails, the number in the identity of studies must rise.
+/// What other versions drew, by which stored studies go on: where this fails, the number in the identity of studies
+/// must rise.
 #[test]
 fn traces_are_those_of_other_versions() {
     let model = Arc::new(Model::new(BuiltIn::Rooms.scene(1), None).unwrap());

@@ -5,9 +5,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::at_walls::AtWalls;
-use super::kind::{Dice, Draw, Kind, Stride};
+use super::kind::{Dice, Draw, Kind};
 use super::room::Room;
 use super::start::{From, Start};
+use super::stride::Stride;
 use crate::study::plan_error::PlanError;
 use crate::study::random::{Purpose, Random};
 

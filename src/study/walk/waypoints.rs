@@ -83,8 +83,8 @@ impl Waypoints {
         Ok(Waypoints { step: plan.step, steps: plan.steps, space, paths: Paths::new(model, visibility) })
     }
 
-    /// The points of a drive of `steps` steps. Goals and wall ends at which the path bends are points of it, so the step to
-    /// one is shorter, and a path that follows a wall has no points between the wall's ends.
+    /// The points of a drive of `steps` steps. Goals and wall ends at which the path bends are points of it, so the
+    /// step to one is shorter, and a path that follows a wall has no points between the wall's ends.
     fn drive(&self, model: &Model, start: From, goals: &mut Random) -> Vec<DVec2> {
         let wanted = self.steps as usize + 1;
         let mut points = Vec::with_capacity(wanted + 1);
@@ -106,8 +106,8 @@ impl Waypoints {
         points
     }
 
-    /// The points of a drive along `path`, its first included and besides that no more than `most`; `None` if it breaks the
-    /// rules.
+    /// The points of a drive along `path`, its first included and besides that no more than `most`; `None` if it breaks
+    /// the rules.
     fn follow(&self, model: &Model, path: &[DVec2], most: usize) -> Option<Vec<DVec2>> {
         // Points between bends are rounded, so near walls they may lie on the wrong side: then they are left out.
         [true, false].into_iter().find_map(|is_spaced| {
@@ -125,7 +125,8 @@ impl Waypoints {
         })
     }
 
-    /// The points between the ends of a leg, from the first on and no more than `most`; none if they would touch a wall.
+    /// The points between the ends of a leg, from the first on and no more than `most`; none if they would touch a
+    /// wall.
     fn between(&self, model: &Model, [a, b]: [DVec2; 2], most: usize) -> Vec<DVec2> {
         let length = a.distance(b);
         let spaced = (1..=most).map(|k| k as f64 * self.step).take_while(|&along| along < length);

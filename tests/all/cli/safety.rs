@@ -209,7 +209,8 @@ mod unix {
         finished.has_failed(2, "parquet", &["f.parquet: this is a pipe; write what it gives to a regular file"]);
     }
 
-    /// With a gigabyte of memory, `check --scene NAME` is refused with `expected`, and what never ends is not waited for.
+    /// With a gigabyte of memory, `check --scene NAME` is refused with `expected`, and what never ends is not waited
+    /// for.
     fn refused_early(folder: &Folder, name: &str, expected: &str) {
         let line = format!("ulimit -v 1000000; tautline check --anchor 0,0 --scene {name}");
         bash(folder, &line).has_failed(2, name, &[expected]);

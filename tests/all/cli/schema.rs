@@ -6,8 +6,8 @@ use serde_json::{Map, Value};
 
 use super::Folder;
 
-/// What the schema says of values, taken literally: a keyword that is not known here fails, so that nothing goes unchecked;
-/// and so does a property that the schema does not describe.
+/// What the schema says of values, taken literally: a keyword that is not known here fails, so that nothing goes
+/// unchecked; and so does a property that the schema does not describe.
 struct Schema {
     root: Value,
 }

@@ -113,7 +113,8 @@ fn rows_of_shards_say_the_same_when_merged() {
 
 #[test]
 fn turns_are_counted_about_the_place_that_is_told() {
-    // A square of side 2 about the origin, and a rope that goes about it between its lower wall's middle and its corner.
+    // A square of side 2 about the origin, and a rope that goes about it between its lower wall's middle and its
+    // corner.
     let folder = Folder::new();
     folder.write("s.wkt", "LINESTRING (-1 -1, 1 -1, 1 1, -1 1, -1 -1)\nPOINT (-3 0)\n");
     let round = [[-3, 0], [-3, -3], [3, -3], [3, 3], [-3, 3], [-3, -3], [3, -3], [3, 3], [-3, 3], [-3, 0]];

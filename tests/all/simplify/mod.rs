@@ -68,7 +68,8 @@ fn walls(scene: &Scene) -> Vec<[DVec2; 2]> {
     (0..scene.walls().len()).map(|wall| scene.ends(wall)).collect()
 }
 
-/// The walls of each component of `scene`, by the number that the first of its vertices has among `numbers`' components.
+/// The walls of each component of `scene`, by the number that the first of its vertices has among `numbers`'
+/// components.
 fn by_component(scene: &Scene, component: &HashMap<[u64; 2], u32>) -> BTreeMap<u32, Vec<[DVec2; 2]>> {
     let mut all: BTreeMap<u32, Vec<[DVec2; 2]>> = BTreeMap::new();
     for wall in walls(scene) {
@@ -115,7 +116,8 @@ fn check(model: &Model, anchors: &[DVec2], simple: &Scene, tolerance: f64) {
                 assert!(nearest <= tolerance * (1.0 + 1e-12), "{p} is {nearest} away");
             }
         }
-        // Closed walls have the same in them: anchors and the ends of other walls. Points on walls may fall on either side.
+        // Closed walls have the same in them: anchors and the ends of other walls. Points on walls may fall on either
+        // side.
         let mut ends: HashMap<[u64; 2], usize> = HashMap::new();
         before.iter().flatten().for_each(|p| *ends.entry(p.to_array().map(f64::to_bits)).or_default() += 1);
         if ends.values().any(|count| count % 2 == 1) {

@@ -105,8 +105,8 @@ fn without_events(record: &TraceRecord) -> TraceRecord {
     TraceRecord { events: Vec::new(), ..record.clone() }
 }
 
-/// Fails unless a record is what its engine promises, given the reference's. Of traces that break the rules, only those that
-/// promise events promise anything.
+/// Fails unless a record is what its engine promises, given the reference's. Of traces that break the rules, only those
+/// that promise events promise anything.
 pub(crate) fn is_as_promised(
     promise: Promise,
     model: &Model,

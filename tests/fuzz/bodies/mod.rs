@@ -1,5 +1,5 @@
-//! What is fuzzed: a function for each target, which takes any bytes and must neither panic nor hang nor take much memory.
-//! Fuzzers call them with what they make up, and `tests/all/corpus.rs` with what they have found.
+//! What is fuzzed: a function for each target, which takes any bytes and must neither panic nor hang nor take much
+//! memory. Fuzzers call them with what they make up, and `tests/all/corpus.rs` with what they have found.
 
 pub(crate) mod engines;
 mod recipe;

@@ -12,7 +12,8 @@ use tautline::trace::{SettledTrace, Trace, settle};
 const WALLS_MAX: usize = 60;
 const STEPS_MAX: usize = 60;
 
-/// A model, and traces that keep to the rules as well as the same with all their steps; `None` where the anchor stands in a wall.
+/// A model, and traces that keep to the rules as well as the same with all their steps; `None` where the anchor stands
+/// in a wall.
 pub(super) fn recipe(input: &[u8]) -> Option<(Arc<Model>, Vec<SettledTrace>)> {
     let mut pieces = Pieces { bytes: Unstructured::new(input), places: vec![DVec2::ZERO] };
     let (mut walls, mut anchor, mut steps) = (Vec::new(), DVec2::ZERO, vec![Vec::new()]);
@@ -72,8 +73,8 @@ impl Pieces<'_> {
         Ok(self.places[usize::from(number) % self.places.len()])
     }
 
-    /// The next place, by itself or by earlier ones: what is degenerate is seldom hit by chance. Drawn to within the limits of
-    /// coordinates.
+    /// The next place, by itself or by earlier ones: what is degenerate is seldom hit by chance. Drawn to within the
+    /// limits of coordinates.
     fn place(&mut self) -> Result<DVec2> {
         let place = match self.bytes.int_in_range(0..=6)? {
             0 => DVec2::from(self.bytes.arbitrary::<[i8; 2]>()?.map(f64::from)) / 4.0,

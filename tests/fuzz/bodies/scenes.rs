@@ -12,8 +12,8 @@ use tautline::trace::{Trace, settle};
 
 use super::engines::agree;
 
-/// With more walls a scene is not dragged through, and with many more not written down: that takes time and finds nothing that
-/// smaller ones do not.
+/// With more walls a scene is not dragged through, and with many more not written down: that takes time and finds
+/// nothing that smaller ones do not.
 const DRAGGED_MAX: usize = 200;
 const WRITTEN_MAX: usize = 20_000;
 
@@ -29,7 +29,8 @@ pub(super) fn read(name: &str, input: &[u8], folder: &Path) {
     }
 }
 
-/// Reads `input` as the two files of a map: the text up to the first zero, then the image, which the text should call `image`.
+/// Reads `input` as the two files of a map: the text up to the first zero, then the image, which the text should call
+/// `image`.
 pub(super) fn read_ros_map(input: &[u8], folder: &Path) {
     let text = input.split(|&b| b == 0).next().unwrap_or_default();
     let image = input.get(text.len() + 1..).unwrap_or_default();

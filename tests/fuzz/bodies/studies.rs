@@ -10,8 +10,8 @@ use tautline::output::merge_results;
 use tautline::scene::Scene;
 use tautline::study::{AnchorPlan, Plan, Shard, State, Study, WalkPlan, run};
 
-/// Reads `input` as a study's file, or, where it begins with a brace, as a plan that a study's folder remembers; what is taken
-/// and small is run.
+/// Reads `input` as a study's file, or, where it begins with a brace, as a plan that a study's folder remembers; what
+/// is taken and small is run.
 pub(super) fn read(input: &[u8], folder: &Path) {
     let plan = if input.starts_with(b"{") {
         serde_json::from_slice::<Plan>(input).ok().and_then(|plan| plan.checked().ok())

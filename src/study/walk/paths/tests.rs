@@ -6,8 +6,8 @@ use crate::geometry::{opposite, orient};
 use crate::study::free_space::Region;
 use crate::study::random::{Purpose, Random};
 
-/// How long the shortest way is that crosses no wall, by Dijkstra's method, looking at every wall for every two points. It
-/// may slip through where walls touch.
+/// How long the shortest way is that crosses no wall, by Dijkstra's method, looking at every wall for every two points.
+/// It may slip through where walls touch.
 fn shortest(model: &Model, from: DVec2, to: DVec2) -> f64 {
     let points = [model.vertices(), &[from, to]].concat();
     let sees = |a: DVec2, b: DVec2| {
@@ -38,8 +38,8 @@ fn length(path: &[DVec2]) -> f64 {
     path.windows(2).map(|leg| leg[0].distance(leg[1])).sum()
 }
 
-/// Searches for paths from goal to goal, and returns at how many wall ends they bend, and how long they and the shortest ways
-/// are.
+/// Searches for paths from goal to goal, and returns at how many wall ends they bend, and how long they and the
+/// shortest ways are.
 fn compare(scene: BuiltIn, seed: u64, count: usize) -> Vec<(usize, [f64; 2])> {
     let model = Arc::new(Model::new(scene.scene(seed), None).unwrap());
     let visibility = Visibility::new(&model).unwrap();

@@ -1,0 +1,26 @@
+//! The table of all tallies.
+
+/// All tallies, handed to the macro `$to`: fields of the summary, each with its description, its name, its type, and
+/// what counts it.
+macro_rules! table {
+    ($to:ident) => {
+        $to! {
+            /// One number a trace: its distribution over the traces.
+            scalars: Vec<tally::Scalar> = tally::scalars::Scalars;
+            /// Histograms of the rope length at the end and of the greatest.
+            histograms: Vec<tally::Histogram> = tally::histograms::Histograms;
+            /// For each limit, when the rope became longer.
+            survival: Vec<tally::Survival> = tally::survival::Limits;
+            /// The obstacles that ropes were wound about at the end, the most often first.
+            obstacles: Vec<tally::Obstacle> = tally::obstacles::Obstacles;
+            /// The most common taut ropes at the end, the most common first.
+            ropes: Vec<tally::CommonRope> = tally::ropes::Ropes;
+            /// The wall ends with which ropes had contacts, those with the greatest share of steps first, at most a
+            /// thousand.
+            contacts: Vec<tally::Contact> = tally::contacts::Contacts;
+            /// The plane.
+            map: Option<tally::Map> = tally::map::Cells;
+        }
+    };
+}
+pub(crate) use table;
