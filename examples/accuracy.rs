@@ -17,10 +17,10 @@ use tautline::candidates::Simd;
 use tautline::engine::{Cpu, Engine, Job};
 use tautline::example::{BuiltIn, Walker, settled_walks};
 use tautline::gpu::{AdapterChoice, Device};
-use tautline::report::bench::BenchScene;
-use tautline::report::extremes::{HEAD, errors};
-use tautline::report::filter::{Filter, Trial};
-use tautline::report::{NoteErrors, note_errors};
+use tautline::lab::astray::{HEAD, errors};
+use tautline::lab::bench::BenchScene;
+use tautline::lab::filter::{Filter, Trial};
+use tautline::lab::{NoteErrors, note_errors};
 use tautline::scene::{Model, Scene, read_scene};
 use tautline::trace::{Trace, settle};
 

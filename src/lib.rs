@@ -15,7 +15,7 @@
 //!
 //! Around them: [`example`] has scenes and traces without files, and [`queries`] those of path planners' benchmarks;
 //! [`simplify`] leaves wall ends out of a scene for speed; a [`study`] draws very many traces and says what their ropes
-//! are like; [`report`] measures engines against each other; a [`picture`] shows ropes and studies; [`escape`] makes
+//! are like; [`lab`] measures engines against each other; a [`picture`] shows ropes and studies; [`escape`] makes
 //! text from files fit for terminals.
 //!
 //! ```
@@ -48,13 +48,14 @@ pub mod example;
 pub mod fast;
 pub mod geometry;
 pub mod gpu;
+pub mod lab;
 mod number;
 pub mod output;
 pub mod picture;
 pub mod queries;
 mod read_error;
 mod read_file;
-pub mod report;
+
 pub mod rope;
 pub mod scene;
 pub mod session;

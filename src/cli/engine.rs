@@ -24,8 +24,12 @@ pub(crate) struct EngineArgs {
     /// Whether exact signs decide, or f32 alone; `fast` implies `--engine gpu` [default: certified]
     #[arg(long, value_enum, value_name = "PRECISION")]
     precision: Option<PrecisionName>,
-    /// The most steps that one query covers; no certified result depends on it
-    #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    /// The most steps that one query covers; no certified result depends on it. For measurements, so it is not shown:
+    /// `bench` has its own
+    #[arg(
+        long, hide = true, allow_negative_numbers = true, value_name = "N",
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
     window: Option<u32>,
     /// Try all wall ends in every query, not only those that the pivot sees and a rope can turn at; no certified result
     /// depends on it

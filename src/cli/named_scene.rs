@@ -6,7 +6,7 @@ use std::sync::Arc;
 use anyhow::anyhow;
 use glam::DVec2;
 use tautline::example::{BuiltIn, NameError};
-use tautline::report::bench::BenchScene;
+use tautline::lab::bench::BenchScene;
 use tautline::scene::{AnchorError, Model, read_scene_with};
 
 use super::failure::Failure;

@@ -2,7 +2,6 @@
 
 mod built_in;
 mod draws;
-pub mod extremes;
 mod floor_plan;
 mod lattice_walls;
 mod random_walls;

@@ -5,7 +5,7 @@ use super::label::width;
 use super::svg::{Align, Svg};
 use super::ticks::Ticks;
 use crate::geometry::number;
-use crate::report::tradeoff::{Method, Point, Setting, Tradeoff};
+use crate::lab::tradeoff::{Method, Point, Setting, Tradeoff};
 
 /// How wide the whole is, and what stands above the panels.
 const WIDTH: f64 = 1080.0;

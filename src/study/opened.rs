@@ -83,8 +83,8 @@ impl Study {
         [self.file.as_deref(), self.given.as_deref()]
     }
 
-    /// The scene with each of its anchors, as ropes see it: simplified if the plan says so. Trace i has anchor i modulo their
-    /// number.
+    /// The scene with each of its anchors, as ropes see it: simplified if the plan says so. Trace i has anchor i modulo
+    /// their number.
     pub fn models(&self) -> &[Arc<Model>] {
         &self.tallies.setting.models
     }

@@ -153,8 +153,8 @@ impl SettledTrace {
         self.walked
     }
 
-    /// How many of its steps leave the free end where it is; of a [coarsened](Self::coarsened) one those of the trace as given.
-    /// O(steps).
+    /// How many of its steps leave the free end where it is; of a [coarsened](Self::coarsened) one those of the trace
+    /// as given. O(steps).
     pub fn still(&self) -> usize {
         if self.is_thinned() {
             return self.coarse.still;

@@ -9,11 +9,11 @@ use tautline::candidates::{Lists, Simd};
 use tautline::engine::{
     Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Options, Promise, REFERENCE, Reference, WINDOW,
 };
-use tautline::example::extremes::{Extreme, FAMILIES};
 use tautline::example::{Walker, random_walls, settled_walks};
 use tautline::geometry::{COORDINATE_MAX, COORDINATE_MIN, between, orient};
 use tautline::gpu::Device;
-use tautline::report::extremes::LONGEST_CHAIN;
+use tautline::lab::astray::LONGEST_CHAIN;
+use tautline::lab::extremes::{Extreme, FAMILIES};
 use tautline::rope::{EventKind, TraceRecord, replay};
 use tautline::scene::Model;
 use tautline::trace::{SettledTrace, Trace, settle};

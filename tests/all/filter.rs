@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use tautline::candidates::{LISTS_BUDGET, Lists, MARGIN, Simd};
 use tautline::example::{Walker, random_walls, settled_walks};
 use tautline::gpu::{GpuPass, SWEEP_WGSL, Tuning};
-use tautline::report::filter::{Filter, QUERIES, Trial};
+use tautline::lab::filter::{Filter, QUERIES, Trial};
 use tautline::scene::{Model, read_scene};
 
 use crate::support::software;

@@ -3,8 +3,8 @@
 use serde_json::{Map, Value, json};
 use tautline::engine::Phase;
 use tautline::environment::Environment;
-use tautline::report::Spread;
-use tautline::report::bench::{Contender, Measured, Row};
+use tautline::lab::Spread;
+use tautline::lab::bench::{Contender, Measured, Row};
 
 /// The whole document.
 pub(super) fn report(environment: &Environment, seed: u64, measured: &Measured) -> Value {

@@ -10,7 +10,7 @@ use glam::DVec2;
 use tautline::engine::{EngineKind, WINDOW};
 use tautline::environment::Environment;
 use tautline::gpu::{AdapterChoice, Device};
-use tautline::report::bench::{BenchError, CONTENDERS, Contender, Gear, Measured, Plan, Setting, Sweep, measure};
+use tautline::lab::bench::{BenchError, CONTENDERS, Contender, Gear, Measured, Plan, Setting, Sweep, measure};
 
 use super::engine::{measured, named, notes};
 use super::failure::Failure;

@@ -2,8 +2,8 @@
 
 use tautline::engine::Phase;
 use tautline::environment::Environment;
-use tautline::report::Spread;
-use tautline::report::bench::{Plan, Row, Setting, Sweep};
+use tautline::lab::Spread;
+use tautline::lab::bench::{Plan, Row, Setting, Sweep};
 
 use super::super::words::{counted, grouped, short};
 

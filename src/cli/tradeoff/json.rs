@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use tautline::environment::Environment;
-use tautline::report::tradeoff::{Answer, Failed, Point, Setting, Tradeoff};
+use tautline::lab::tradeoff::{Answer, Failed, Point, Setting, Tradeoff};
 
 use crate::cli::bench::json::{spread, surroundings};
 

@@ -12,10 +12,10 @@ use tautline::engine::{EngineKind, WINDOW};
 use tautline::environment::Environment;
 use tautline::example::{Walker, walks};
 use tautline::gpu::Device;
+use tautline::lab::bench::{BenchScene, Gear, Plan};
+use tautline::lab::tradeoff::{Method, Setting, Tradeoff, TradeoffError, Wanted, Work, tradeoff};
 use tautline::output::{WholeFile, check_place};
 use tautline::picture;
-use tautline::report::bench::{BenchScene, Gear, Plan};
-use tautline::report::tradeoff::{Method, Setting, Tradeoff, TradeoffError, Wanted, Work, tradeoff};
 use tautline::trace::{Trace, read_traces};
 
 use super::bench::{length, open_device};

@@ -1,7 +1,7 @@
 //! What was measured, as tables.
 
 use tautline::environment::Environment;
-use tautline::report::tradeoff::{Answer, Failed, Point, Tradeoff};
+use tautline::lab::tradeoff::{Answer, Failed, Point, Tradeoff};
 
 use crate::cli::bench::table::{aligned, range};
 use crate::cli::words::{counted, grouped, short};

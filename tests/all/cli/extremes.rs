@@ -5,8 +5,8 @@ use std::fmt::Write;
 use glam::DVec2;
 use serde_json::Value;
 use tautline::engine::{Engine, Job, Reference};
-use tautline::example::extremes::FAMILIES;
 use tautline::geometry::{COORDINATE_MAX, COORDINATE_MIN};
+use tautline::lab::extremes::FAMILIES;
 use tautline::trace::settle;
 
 use super::traces::write_parquet;

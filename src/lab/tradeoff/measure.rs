@@ -9,8 +9,8 @@ use super::setting::{Setting, Variant, Work};
 use super::truth::{Score, Truth};
 use super::{TradeoffError, Wanted};
 use crate::engine::{EngineError, Job};
-use crate::report::Spread;
-use crate::report::bench::{Gear, Plan, order};
+use crate::lab::Spread;
+use crate::lab::bench::{Gear, Plan, order};
 use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
 

@@ -1,11 +1,11 @@
-//! How far the engines that promise nothing are off in [extreme cases](crate::example::extremes).
+//! How far the engines that promise nothing are off in [extreme cases](crate::lab::extremes).
 
 use rayon::prelude::*;
 use std::fmt;
 
 use crate::engine::{Cpu, Engine, EngineError, FastGpu, Job, Note};
-use crate::example::extremes::{Extreme, FAMILIES, Family};
 use crate::gpu::Device;
+use crate::lab::extremes::{Extreme, FAMILIES, Family};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::{SettledTrace, settle};

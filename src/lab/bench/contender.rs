@@ -44,34 +44,34 @@ const fn usual(engine: &'static EngineKind, variant: &'static str) -> Contender 
 }
 
 /// The product: a candidate pass on the GPU over windows of steps.
-pub(in crate::report) const GPU: Contender = usual(&engine::GPU, "windows");
+pub(in crate::lab) const GPU: Contender = usual(&engine::GPU, "windows");
 
 /// The same on threads.
-pub(in crate::report) const CPU: Contender = usual(&engine::CPU, "windows");
+pub(in crate::lab) const CPU: Contender = usual(&engine::CPU, "windows");
 
 /// The shape of the note's method: one test a vertex and step.
 const GPU_ALL: Contender = Contender { engine: &engine::GPU, variant: "window 1, all vertices", shape: Shape::Plain };
 
 /// The product in a hurry.
-pub(in crate::report) const FAST: Contender =
+pub(in crate::lab) const FAST: Contender =
     Contender { engine: &engine::GPU, variant: "fast, windows", shape: Shape::Usual(Precision::Fast) };
 
 /// The other method, which knows the rope after every step.
-pub(in crate::report) const FUNNEL: Contender = usual(&engine::FUNNEL, "every step");
+pub(in crate::lab) const FUNNEL: Contender = usual(&engine::FUNNEL, "every step");
 
 /// The other method, which knows the rope at the end only.
-pub(in crate::report) const FUNNEL_FINAL: Contender =
+pub(in crate::lab) const FUNNEL_FINAL: Contender =
     Contender { engine: &engine::FUNNEL, variant: "final rope only", shape: Shape::FinalOnly };
 
 /// The baseline.
-pub(in crate::report) const NOTE: Contender = usual(&engine::NOTE, "listing 1");
+pub(in crate::lab) const NOTE: Contender = usual(&engine::NOTE, "listing 1");
 
 /// The baseline with the note's remedy for walls on one line.
-pub(in crate::report) const NOTE_FURTHEST: Contender =
+pub(in crate::lab) const NOTE_FURTHEST: Contender =
     Contender { engine: &engine::NOTE, variant: "furthest", shape: Shape::Furthest };
 
 /// The arbiter.
-pub(in crate::report) const REFERENCE: Contender = usual(&engine::REFERENCE, "one by one");
+pub(in crate::lab) const REFERENCE: Contender = usual(&engine::REFERENCE, "one by one");
 
 /// All contenders of a bench, in the order of the report. The baseline is one of them.
 pub const CONTENDERS: [Contender; 8] = [GPU, CPU, GPU_ALL, FAST, FUNNEL, FUNNEL_FINAL, NOTE, REFERENCE];
@@ -107,12 +107,12 @@ impl Contender {
     }
 
     /// Whether it writes down what happens on the way.
-    pub(in crate::report) fn has_events(&self) -> bool {
+    pub(in crate::lab) fn has_events(&self) -> bool {
         self.shape != Shape::FinalOnly
     }
 
     /// What its results must agree with.
-    pub(in crate::report) fn promise(&self) -> Promise {
+    pub(in crate::lab) fn promise(&self) -> Promise {
         self.engine.promise(self.decides())
     }
 
@@ -126,11 +126,7 @@ impl Contender {
     }
 
     /// Makes the engine for `model`; `None` if it needs a GPU and there is none.
-    pub(in crate::report) fn open(
-        &self,
-        model: Arc<Model>,
-        gear: &Gear,
-    ) -> Result<Option<Box<dyn Engine>>, EngineError> {
+    pub(in crate::lab) fn open(&self, model: Arc<Model>, gear: &Gear) -> Result<Option<Box<dyn Engine>>, EngineError> {
         let options = match self.shape {
             Shape::Usual(precision) => Options { precision, window: gear.window, keep_all: false },
             Shape::Plain => Options { window: 1, keep_all: true, ..Options::default() },

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::engine::{Engine, EngineError, EngineKind, Promise};
-use crate::report::bench::{CPU, Contender, FAST, FUNNEL, FUNNEL_FINAL, GPU, Gear, NOTE, NOTE_FURTHEST, REFERENCE};
+use crate::lab::bench::{CPU, Contender, FAST, FUNNEL, FUNNEL_FINAL, GPU, Gear, NOTE, NOTE_FURTHEST, REFERENCE};
 use crate::scene::Model;
 
 /// A way to turn traces into ropes.

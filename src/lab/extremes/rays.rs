@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::extreme::Extreme;
 use super::tools::{case, model, p, way};
-use crate::example::draws::Draws;
+use crate::example::Draws;
 
 /// Walls and trace points on the same lattice.
 pub(super) fn lattices() -> Vec<Extreme> {

@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::extreme::Extreme;
 use super::tools::{case, model, on_circle, p, walls_of, way};
 use super::touching::wander;
-use crate::example::draws::Draws;
+use crate::example::Draws;
 use crate::example::{Walker, random_walls, walks};
 
 /// Random walls, from one to 100,000, which have 200,000 ends.

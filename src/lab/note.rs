@@ -29,7 +29,7 @@ pub struct NoteErrors {
 ///
 /// ```
 /// use tautline::example::{BuiltIn, Walker};
-/// use tautline::report::note_errors;
+/// use tautline::lab::note_errors;
 /// use tautline::scene::Model;
 ///
 /// let model = Model::new(BuiltIn::Lattice(60).scene(1), None)?.into();

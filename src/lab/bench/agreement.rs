@@ -104,7 +104,7 @@ mod tests {
     use super::*;
     use crate::engine::{Engine, Job, Reference};
     use crate::example::{BuiltIn, Walker, settled_walks};
-    use crate::report::bench::{CPU, FUNNEL, GPU, NOTE, REFERENCE};
+    use crate::lab::bench::{CPU, FUNNEL, GPU, NOTE, REFERENCE};
     use crate::scene::Model;
 
     fn records() -> Vec<TraceRecord> {

@@ -1,7 +1,7 @@
 //! What every trace really comes to, and how far from that a method is.
 
 use crate::engine::{Cpu, Engine, Job, REFERENCE, Reference};
-use crate::report::bench::Disagreement;
+use crate::lab::bench::Disagreement;
 use crate::rope::{Event, EventKind, Side, TraceRecord};
 use crate::scene::Model;
 use crate::study::Moments;

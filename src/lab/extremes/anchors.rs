@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::extreme::Extreme;
 use super::tools::{around, case, model, on_circle, p, walls_of};
 use super::touching::wander;
-use crate::example::draws::Draws;
+use crate::example::Draws;
 use crate::example::{lattice_walls, random_walls};
 
 /// Each trace starts on the anchor, stays there, wanders about, and comes back now and then.

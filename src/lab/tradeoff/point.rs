@@ -2,7 +2,7 @@
 
 use super::setting::Setting;
 use super::truth::Answer;
-use crate::report::Spread;
+use crate::lab::Spread;
 
 /// One method at one setting: what it costs and what it gets wrong.
 #[derive(Debug, Clone)]

@@ -8,7 +8,7 @@ use super::runner::Runner;
 use super::setting::Work;
 use super::{BenchError, Setting};
 use crate::engine::{Cpu, Engine, EngineError, Job, Phase};
-use crate::report::Spread;
+use crate::lab::Spread;
 use crate::trace::SettledTrace;
 
 /// How much is measured.
@@ -187,7 +187,7 @@ fn ready<'w>(
 
 /// The order in which a repeat runs `count` contenders: another one first each time, and backwards every other time, so
 /// that none always follows the same one.
-pub(in crate::report) fn order(count: usize, repeat: usize) -> impl Iterator<Item = usize> {
+pub(in crate::lab) fn order(count: usize, repeat: usize) -> impl Iterator<Item = usize> {
     (0..count).map(move |i| if repeat.is_multiple_of(2) { i } else { count - 1 - i }).map(move |i| (i + repeat) % count)
 }
 

@@ -1,7 +1,7 @@
 //! Why there is no report.
 
 use crate::engine::EngineError;
-use crate::report::bench::Disagreement;
+use crate::lab::bench::Disagreement;
 use crate::trace::Violation;
 
 /// Why there is no report.

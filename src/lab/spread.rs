@@ -15,7 +15,7 @@ impl Spread {
     /// The spread of `values`; `None` if there are none.
     ///
     /// ```
-    /// use tautline::report::Spread;
+    /// use tautline::lab::Spread;
     /// assert_eq!(Spread::of([3.0, 1.0, 2.0, 10.0]), Some(Spread { min: 1.0, median: 2.5, max: 10.0 }));
     /// ```
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::extreme::Extreme;
 use super::tools::{along, around, case, model, nudged, numbered, on_circle, p, walls_of, way};
-use crate::example::draws::Draws;
+use crate::example::Draws;
 use crate::example::{Walker, random_walls, walks};
 use crate::scene::Model;
 
