@@ -86,34 +86,34 @@ fn a_trace_that_crosses_a_wall_is_drawn_if_asked_for() {
     assert!(folder.text("a.svg").contains("It crosses a wall in step 1; from there on the rope may be wrong."));
 }
 
-/// The block of the README that starts with that line, without its indentation.
-fn block(readme: &str, first: &str) -> String {
-    let lines = readme.lines().skip_while(|line| line.trim() != first);
+/// The block of the tutorial that starts with that line, without its indentation.
+fn block(tutorial: &str, first: &str) -> String {
+    let lines = tutorial.lines().skip_while(|line| line.trim() != first);
     let lines = lines.take_while(|line| line.starts_with("    ") || line.is_empty());
     lines.map(|line| format!("{}\n", line.trim())).collect()
 }
 
-/// What a block of the README is that shows this.
+/// What a block of the tutorial is that shows this.
 fn block_of(shown: &str) -> String {
     shown.lines().map(|line| format!("{}\n", line.trim())).collect::<String>() + "\n"
 }
 
 #[test]
-fn the_readme_leads_from_a_plan_to_a_moving_picture() {
+fn the_tutorial_leads_from_a_plan_to_a_moving_picture() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
+    let tutorial = std::fs::read_to_string(root.join("docs/tutorial.md")).unwrap();
     let folder = Folder::new();
     std::fs::copy(root.join("tests/scenes/formats/plan.svg"), folder.path("plan.svg")).unwrap();
-    folder.write("drag.csv", block(&readme, "trace,x,y").trim_end());
-    let study = block(&readme, "[scene]");
+    folder.write("drag.csv", block(&tutorial, "trace,x,y").trim_end());
+    let study = block(&tutorial, "[scene]");
     folder.write("plan.toml", study.replace("10_000", "2_000"));
     let found = folder.done("check --scene plan.svg").stdout;
-    assert_eq!(block(&readme, found.lines().next().unwrap()), block_of(&found), "{found}");
+    assert_eq!(block(&tutorial, found.lines().next().unwrap()), block_of(&found), "{found}");
     folder.done("draw --scene plan.svg --traces drag.csv --out drag.html");
     assert!(folder.text("drag.html").contains("<script>"));
     folder.done("draw --scene plan.svg --traces drag.csv --out drag.svg");
     let committed = std::fs::read_to_string(root.join("docs/plan.svg")).unwrap();
-    assert!(folder.text("drag.svg") == committed, "docs/plan.svg is not what the README's commands draw");
+    assert!(folder.text("drag.svg") == committed, "docs/plan.svg is not what the tutorial's commands draw");
     folder.done("study run plan.toml --engine cpu");
     assert!(folder.path("plan-study/report.html").exists());
     folder.done("study replay plan-study --trace 3 --draw walk.html");
