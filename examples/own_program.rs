@@ -32,10 +32,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             let base = file.parent().filter(|base| *base != Path::new("")).unwrap_or(Path::new("."));
             let study = Arc::new(Study::open(Plan::read(file)?, base)?);
             let options = Options { precision: study.plan().run.precision, ..Options::default() };
-            let opened = study.models().iter().map(|model| open_best(model.clone(), &options));
-            let opened = opened.collect::<Result<Vec<_>, _>>()?;
-            let computed = Computed::by(&*opened[0].engine, &opened[0].on.to_string());
-            let mut engines: Vec<_> = opened.into_iter().map(|opened| opened.engine).collect();
+            // One engine an anchor, all on the same device.
+            let opened = open_best(study.models()[0].clone(), &options)?;
+            let computed = Computed::by(&*opened.engine, &opened.on.to_string());
+            let others = study.models()[1..].iter().map(|model| opened.another(model.clone()));
+            let mut engines = others.collect::<Result<Vec<_>, _>>()?;
+            engines.insert(0, opened.engine);
             let session = Session::begin(Arc::new(Folder::make(out)?), study, base, Shard::WHOLE)?;
             session.prepare(computed)?;
             let report = session.run(&mut engines, &Job::new())?;

@@ -65,6 +65,7 @@ pub mod study;
 pub mod trace;
 pub mod trade;
 pub mod visibility;
+pub mod words;
 
 pub use number::parse_number;
 pub use read_error::{Place, ReadError};

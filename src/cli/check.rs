@@ -13,10 +13,10 @@ use tautline::trace::{Violation, ViolationKind};
 use tautline::trade::Terms;
 
 use super::failure::Failure;
-use super::input::InputArgs;
+use super::input::{InputArgs, dropped};
 use super::look::{Look, Target, save};
 use super::paths::keep_apart;
-use super::words::{counted, dropped, place};
+use super::words::{counted, place};
 use super::{print, print_json};
 
 /// How many traces are checked at a time.

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use tautline::output::{WrittenScene, write_scene};
-use tautline::scene::{SceneFormat, alternatives, read_scene_with};
+use tautline::scene::{SceneFormat, alternatives};
 
 use super::failure::Failure;
-use super::input::{FileArgs, note};
+use super::input::{FileArgs, read};
 use super::paths::keep_apart;
 use super::print;
 use super::words::{place, plainly};
@@ -33,8 +33,7 @@ fn scenes_written() -> String {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     keep_apart(&[("IN", Some(&args.from))], &[("OUT", Some(&args.to))])?;
-    let scene = read_scene_with(&args.from, &args.file.options())?;
-    note(&args.from, &scene);
+    let scene = read(&args.from, &args.file)?;
     write_scene(&args.to, &scene)?;
     let lacks = WrittenScene::of(&args.to).map_or("", WrittenScene::lacks);
     if !lacks.is_empty() && !scene.is_bare() {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use anyhow::anyhow;
 use tautline::engine::{Cpu, Engine, Job};
 use tautline::example::some_walks;
+use tautline::output::write_whole;
 use tautline::picture::{Drawing, Situation};
 use tautline::rope::TraceRecord;
 use tautline::scene::Model;
@@ -123,7 +124,7 @@ fn gallery(folder: &Path) -> Result<(), Failure> {
         .map_err(|e| Failure::system(e.kind(), anyhow!("cannot make {}: {e}", folder.display())))?;
     for situation in Situation::all() {
         let path = folder.join(format!("{}.svg", situation.name));
-        super::look::write_whole(&path, situation.svg().as_bytes())?;
+        write_whole(&path, situation.svg().as_bytes())?;
     }
     print(&format!("wrote {} pictures into {}\n", Situation::all().len(), folder.display()))
 }

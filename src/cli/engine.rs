@@ -8,7 +8,7 @@ use tautline::engine::{
     ENGINES, Engine, EngineError, EngineKind, GPU, Opened, Options, Precision, RunsOn, WINDOW, Why, open_best,
 };
 use tautline::gpu::{AdapterChoice, Device, GpuError, driver_faults};
-use tautline::scene::Model;
+use tautline::scene::{Model, alternatives};
 
 use super::failure::Failure;
 
@@ -65,20 +65,6 @@ pub(super) fn of_studies(arg: clap::Arg) -> clap::Arg {
     arg.value_parser(names(|kind| !kind.counts_events()))
 }
 
-/// Takes the names of engines that are measured, in this order.
-pub(super) fn measured(
-    engines: impl IntoIterator<Item = &'static EngineKind>,
-) -> impl TypedValueParser<Value = &'static EngineKind> {
-    let mut once: Vec<&EngineKind> = Vec::new();
-    for kind in engines {
-        if !once.contains(&kind) {
-            once.push(kind);
-        }
-    }
-    PossibleValuesParser::new(once.into_iter().map(|kind| kind.name))
-        .map(|name| EngineKind::named(&name).expect("only names of engines are taken"))
-}
-
 impl EngineArgs {
     /// The precision asked for, if one was.
     pub(crate) fn precision(&self) -> Option<Precision> {
@@ -105,6 +91,15 @@ impl EngineArgs {
             return Err(Failure::input(anyhow!(
                 "precision fast is one of the engine gpu: give --engine gpu or auto with it, or take precision \
                  certified"
+            )));
+        }
+        if self.keep_all && !kind.asks {
+            let asking: Vec<&str> =
+                ENGINES.iter().filter(|kind| kind.asks).map(|kind| kind.name).chain([AUTO]).collect();
+            return Err(Failure::input(anyhow!(
+                "--keep-all goes with --engine {}: the engine {} asks no queries",
+                alternatives(&asking),
+                kind.name
             )));
         }
         Ok(())

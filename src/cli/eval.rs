@@ -10,12 +10,11 @@ use tautline::trade::Terms;
 
 use super::engine::EngineArgs;
 use super::failure::Failure;
-use super::input::InputArgs;
+use super::input::{InputArgs, dropped};
 use super::paths::keep_apart;
 use super::progress::{Progress, with_progress};
 use super::summary::Summary;
 use super::trade::TradeArgs;
-use super::words::dropped;
 use super::{print, print_json};
 
 #[derive(Debug, clap::Args)]

@@ -17,6 +17,7 @@ use super::failure::Failure;
 use super::parse::{above_zero, point};
 use super::paths::Named;
 use super::violations::{OnViolation, Violations};
+use super::words::counted;
 
 /// How many traces the built-in example has, and how they are walked.
 const EXAMPLE_TRACES: u64 = 4000;
@@ -79,7 +80,7 @@ enum Cells {
 }
 
 impl FileArgs {
-    pub(crate) fn options(&self) -> SceneOptions {
+    fn options(&self) -> SceneOptions {
         let unknown = match self.unknown {
             Cells::Free => Unknown::Free,
             Cells::Blocked => Unknown::Blocked,
@@ -92,6 +93,21 @@ impl FileArgs {
             without_layers: self.without_layers.clone(),
         }
     }
+}
+
+/// The scene in a file. Says on stderr what is to be known of it.
+pub(super) fn read(path: &Path, file: &FileArgs) -> Result<Scene, Failure> {
+    let scene = read_scene_with(path, &file.options())?;
+    note(path, &scene);
+    Ok(scene)
+}
+
+/// Ties the rope in the scene called `name`; where nothing says at which point, the message says `how` to.
+pub(super) fn tie(scene: Scene, anchor: Option<DVec2>, name: &str, how: &str) -> Result<Model, Failure> {
+    Model::new(scene, anchor).map_err(|error| match error {
+        AnchorError::Missing => Failure::input(anyhow!("{name}: no anchor; {how}")),
+        other => Failure::input(anyhow!("{name}: {other}")),
+    })
 }
 
 /// Tells what the reader of a scene has to say.
@@ -125,22 +141,12 @@ impl InputArgs {
 
     /// The walls, and the anchor that the file may mark. Says on stderr what is to be known of the file.
     pub(crate) fn walls(&self) -> Result<Scene, Failure> {
-        match &self.scene {
-            Some(path) => {
-                let scene = read_scene_with(path, &self.file.options())?;
-                note(path, &scene);
-                Ok(scene)
-            }
-            None => Ok(floor_plan()),
-        }
+        self.scene.as_deref().map_or_else(|| Ok(floor_plan()), |path| read(path, &self.file))
     }
 
     /// Ties the rope in `scene`. Warns of an anchor that is hardly where it was meant to be.
     pub(crate) fn tie(&self, scene: Scene) -> Result<Model, Failure> {
-        let model = Model::new(scene, self.anchor).map_err(|error| match error {
-            AnchorError::Missing => Failure::input(anyhow!("{}: no anchor; {}", self.name(), self.how_to_tie())),
-            other => Failure::input(anyhow!("{}: {other}", self.name())),
-        })?;
+        let model = tie(scene, self.anchor, &self.name(), &self.how_to_tie())?;
         if self.scene.is_some() {
             warn(&self.name(), &model);
         }
@@ -173,6 +179,11 @@ impl InputArgs {
 fn scenes() -> String {
     let files: Vec<&str> = SceneFormat::all().iter().map(SceneFormat::files).collect();
     format!("The walls: {} (docs/scenes.md)", alternatives(&files))
+}
+
+/// What is said of walls that were dropped.
+pub(super) fn dropped(walls: usize) -> String {
+    counted(walls as u64, "wall of zero length was dropped", "walls of zero length were dropped")
 }
 
 /// How a file of this format marks its anchor.

@@ -1,12 +1,11 @@
 //! What a picture shows and how, and the file that it becomes.
 
-use std::io::Write;
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::{Display, Path, PathBuf};
 
 use anyhow::anyhow;
 use glam::DVec2;
-use tautline::output::{WholeFile, WriteError, check_place};
+use tautline::output::{WholeFile, check_place, write_whole};
 use tautline::picture::{self, Drawing, Part, PictureError, Theme};
 
 use super::failure::Failure;
@@ -98,38 +97,68 @@ pub(crate) struct Target {
 impl Target {
     /// Checks, before anything is computed, that the file can be written and goes with the look. Leaves nothing behind.
     pub(crate) fn new(path: &Path, look: &Look) -> Result<Self, Failure> {
-        check_place(path)?;
         let shown = path.display();
+        let is = "the extension does not name a format; pictures are written as .svg, .png or .html";
+        let target = Target::at(path, is)?;
+        let no = |what: String| Err(Failure::input(anyhow!(what)));
+        match target.kind {
+            Kind::Png if look.animate => {
+                no(format!("{shown}: a PNG does not move; --animate makes an .svg or an .html"))
+            }
+            Kind::Svg if look.animate && look.step.is_some() => {
+                no(format!("--step and --animate: {shown} plays all steps; an .html begins at one"))
+            }
+            Kind::Svg | Kind::Html if look.width.is_some() => {
+                no(format!("--width goes with a .png; {shown} has no pixels"))
+            }
+            _ => target.checked(),
+        }
+    }
+
+    /// The same for what does not move and has no page; `is` says what it is drawn as.
+    pub(crate) fn still(path: &Path, is: &str) -> Result<Self, Failure> {
+        match Target::at(path, is)? {
+            Target { kind: Kind::Html, .. } => Err(Failure::input(anyhow!("{}: {is}", path.display()))),
+            target => target.checked(),
+        }
+    }
+
+    fn at(path: &Path, is: &str) -> Result<Self, Failure> {
+        check_place(path)?;
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         let kind = match extension.as_str() {
             "svg" => Kind::Svg,
             "png" => Kind::Png,
             "html" | "htm" => Kind::Html,
-            _ => {
-                let all = "pictures are written as .svg, .png or .html";
-                return Err(Failure::input(anyhow!("{shown}: the extension does not name a format; {all}")));
-            }
+            _ => return Err(Failure::input(anyhow!("{}: {is}", path.display()))),
         };
-        if look.animate && kind == Kind::Png {
-            return Err(Failure::input(anyhow!("{shown}: a PNG does not move; --animate makes an .svg or an .html")));
-        }
-        if look.animate && kind == Kind::Svg && look.step.is_some() {
-            return Err(Failure::input(anyhow!(
-                "--step and --animate: {shown} plays all steps; an .html begins at one"
-            )));
-        }
-        if look.width.is_some() && kind != Kind::Png {
-            return Err(Failure::input(anyhow!("--width goes with a .png; {shown} has no pixels")));
-        }
-        WholeFile::create(path).map(drop)?;
         Ok(Target { path: path.to_owned(), kind })
+    }
+
+    fn checked(self) -> Result<Self, Failure> {
+        WholeFile::create(&self.path).map(drop)?;
+        Ok(self)
+    }
+
+    /// Writes a picture; a PNG is that many pixels wide.
+    pub(crate) fn save(&self, text: String, width: u32) -> Result<(), Failure> {
+        let bytes = match self.kind {
+            Kind::Png => picture::png(&text, width)?,
+            Kind::Svg | Kind::Html => text.into_bytes(),
+        };
+        Ok(write_whole(&self.path, &bytes)?)
+    }
+
+    /// The file's name as people see it.
+    pub(crate) fn shown(&self) -> Display<'_> {
+        self.path.display()
     }
 }
 
 /// Draws, writes what is drawn, and says so.
 pub(crate) fn write(target: &Target, drawing: &Drawing<'_>, look: &Look) -> Result<(), Failure> {
     save(target, drawing, look)?;
-    print(&format!("wrote {}\n", target.path.display()))
+    print(&format!("wrote {}\n", target.shown()))
 }
 
 /// Draws, and writes what is drawn.
@@ -142,34 +171,21 @@ pub(crate) fn save(target: &Target, drawing: &Drawing<'_>, look: &Look) -> Resul
     let mut drawing = drawing.clone().theme(theme).part(look.view);
     drawing = look.step.into_iter().fold(drawing, Drawing::at_step);
     drawing = look.rays.into_iter().fold(drawing, Drawing::rays);
-    let bytes = match (target.kind, &look.frames) {
-        (Kind::Html, None) => drawing.page()?.into_bytes(),
-        (Kind::Html, Some(events)) => drawing.frames_page(events.clone())?.into_bytes(),
-        (kind, frames) => {
-            let svg = match frames {
-                Some(events) => drawing.frames(events.clone())?,
-                None if look.animate => drawing.animated()?,
-                None => drawing.svg()?,
-            };
-            match kind {
-                Kind::Png => picture::png(&svg, look.width.unwrap_or(WIDTH)).map_err(unpainted)?,
-                _ => svg.into_bytes(),
-            }
-        }
+    let text = match (target.kind, &look.frames) {
+        (Kind::Html, None) => drawing.page()?,
+        (Kind::Html, Some(events)) => drawing.frames_page(events.clone())?,
+        (_, Some(events)) => drawing.frames(events.clone())?,
+        (_, None) if look.animate => drawing.animated()?,
+        (_, None) => drawing.svg()?,
     };
-    write_whole(&target.path, &bytes)
+    target.save(text, look.width.unwrap_or(WIDTH))
 }
 
-fn unpainted(error: PictureError) -> Failure {
-    match error {
-        PictureError::Size { .. } => Failure::input(anyhow!("--width: {error}")),
-        other => Failure::internal(other.into()),
+impl From<PictureError> for Failure {
+    fn from(error: PictureError) -> Self {
+        match error {
+            PictureError::Size { .. } => Failure::input(anyhow!("--width: {error}")),
+            other => Failure::internal(other.into()),
+        }
     }
-}
-
-/// Writes a file whole or not at all.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let mut file = WholeFile::create(path)?;
-    file.write_all(bytes).map_err(|cause| WriteError::Io { path: path.to_owned(), cause })?;
-    Ok(file.finish()?)
 }

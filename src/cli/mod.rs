@@ -17,7 +17,7 @@ mod input;
 mod interrupt;
 mod look;
 mod manual;
-mod named_scene;
+mod measured;
 mod parse;
 mod paths;
 mod progress;
@@ -28,7 +28,6 @@ mod summary;
 mod trade;
 mod tradeoff;
 mod violations;
-mod words;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -36,6 +35,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use say::{print, print_json};
+use tautline::words;
 
 /// Taut ropes of dragged traces among walls, in bulk and exactly, on the GPU.
 #[derive(Debug, Parser)]

@@ -26,7 +26,9 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Prints a report as one JSON document.
-pub(crate) fn print_json(report: &serde_json::Value) -> Result<(), Failure> {
+pub(crate) fn print_json(report: &impl serde::Serialize) -> Result<(), Failure> {
+    // By way of a value, which has its keys in order.
+    let report = serde_json::to_value(report).map_err(|e| Failure::internal(e.into()))?;
     write(escaped_json(&format!("{report:#}\n")).as_bytes())
 }
 

@@ -78,6 +78,33 @@ pub struct Opened {
     pub on: RunsOn,
     /// Why it was chosen.
     pub why: Why,
+    pub(super) options: Options,
+}
+
+impl Opened {
+    /// The same engine for another model, on the same device. A device takes long to open, and is opened once.
+    ///
+    /// # Errors
+    ///
+    /// As [`EngineKind::open`].
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use tautline::engine::{Job, Options, open_best};
+    /// use tautline::example::{Walker, floor_plan, settled_walks};
+    /// use tautline::scene::Model;
+    ///
+    /// let here = Arc::new(Model::new(floor_plan(), None)?);
+    /// let there = Arc::new(here.tied([5.0, 5.0].into())?);
+    /// let opened = open_best(here, &Options::default())?;
+    /// let walks = settled_walks(&there, Walker { step: 0.3, steps: 50, seed: 1 }, 3);
+    /// assert_eq!(opened.another(there)?.evaluate(&walks, &Job::new())?.len(), 3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn another(&self, model: Arc<Model>) -> Result<Box<dyn Engine>, EngineError> {
+        let device = if let RunsOn::Device(device) = &self.on { Some(device.clone()) } else { None };
+        Ok(self.kind.open(model, device, &self.options)?.engine)
+    }
 }
 
 /// What an engine runs on; shown in words.
@@ -170,7 +197,7 @@ impl EngineKind {
             (Open::Threads(make), _) => (make(model, options), RunsOn::Threads(self.threads())),
             (Open::Thread(make), _) => (make(model), RunsOn::Thread),
         };
-        Ok(Opened { engine, kind: self, on, why: Why::Asked })
+        Ok(Opened { engine, kind: self, on, why: Why::Asked, options: *options })
     }
 }
 

@@ -7,7 +7,9 @@ pub mod extremes;
 pub mod filter;
 mod note;
 mod spread;
+mod surroundings;
 pub mod tradeoff;
 
 pub use note::{NoteErrors, note_errors};
 pub use spread::Spread;
+pub use surroundings::Surroundings;

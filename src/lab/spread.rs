@@ -1,7 +1,14 @@
 //! A number that was measured several times.
 
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::words::short;
+
 /// The least, the middle and the greatest of several measurements.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Spread {
     /// The least.
     pub min: f64,
@@ -24,5 +31,12 @@ impl Spread {
         let n = values.len();
         let (min, max) = (*values.first()?, *values.last()?);
         Some(Spread { min, median: (values[(n - 1) / 2] + values[n / 2]) / 2.0, max })
+    }
+}
+
+impl fmt::Display for Spread {
+    /// From the least to the greatest, in words.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}..{}", short(self.min), short(self.max))
     }
 }

@@ -18,6 +18,7 @@ mod text;
 mod whole_file;
 mod write_error;
 
+use std::io::Write;
 use std::path::Path;
 
 pub use events::{EventWriter, write_events};
@@ -71,6 +72,25 @@ pub fn check_output(path: &Path) -> Result<(), WriteError> {
 /// What stands there.
 pub fn check_place(path: &Path) -> Result<(), WriteError> {
     target::refuse_special(path)
+}
+
+/// Writes a file, whole or not at all.
+///
+/// # Errors
+///
+/// Those of [`WholeFile::create`], and a file that cannot be written.
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("a.txt");
+/// tautline::output::write_whole(&path, b"all of it")?;
+/// assert_eq!(std::fs::read(&path)?, b"all of it");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    let mut file = WholeFile::create(path)?;
+    file.write_all(bytes).map_err(|cause| WriteError::Io { path: path.to_owned(), cause })?;
+    file.finish()
 }
 
 #[cfg(test)]

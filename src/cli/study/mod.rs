@@ -11,11 +11,11 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use clap::Subcommand;
+use tautline::output::write_whole;
 use tautline::session::RunReport;
 use tautline::study::{EXAMPLE, Plan, Summary};
 
 use super::failure::Failure;
-use super::look::write_whole;
 use super::{examples, print, print_json};
 
 #[derive(Debug, clap::Args)]

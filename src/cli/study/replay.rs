@@ -7,13 +7,13 @@ use glam::DVec2;
 use tautline::engine::{Engine, FastGpu, Job, Precision, Reference};
 use tautline::geometry::number as shortest;
 use tautline::gpu::{AdapterChoice, Device};
-use tautline::output::{EventWriter, check_output};
+use tautline::output::{EventWriter, check_output, write_whole};
 use tautline::picture::Drawing;
 use tautline::session::look;
 
 use super::base::BaseArgs;
 use crate::cli::failure::Failure;
-use crate::cli::look::{Look, Target, write, write_whole};
+use crate::cli::look::{Look, Target, write};
 use crate::cli::paths::{keep_apart, place};
 use crate::cli::print;
 use crate::cli::words::{counted, plainly, short};

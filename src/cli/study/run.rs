@@ -199,19 +199,17 @@ impl Engines {
     /// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on
     /// purpose, and `funnel` knows no contacts passed straight.
     fn open(args: &EngineArgs, study: &Study) -> Result<Self, Failure> {
-        let mut all = Engines { engines: Vec::new(), on: String::new() };
-        for model in study.models() {
-            let opened = args.open_for(study.plan().run.precision, model)?;
-            if !opened.kind.counts_events() {
-                return Err(Failure::input(anyhow!(
-                    "--engine: {} does not count the same events as the other engines; give one of those for a study",
-                    opened.kind.name
-                )));
-            }
-            all.engines.push(opened.engine);
-            all.on = opened.on.to_string();
+        let (first, others) = study.models().split_first().expect("a study has an anchor");
+        let opened = args.open_for(study.plan().run.precision, first)?;
+        if !opened.kind.counts_events() {
+            return Err(Failure::input(anyhow!(
+                "--engine: {} does not count the same events as the other engines; give one of those for a study",
+                opened.kind.name
+            )));
         }
-        Ok(all)
+        let on = opened.on.to_string();
+        let others: Vec<_> = others.iter().map(|model| opened.another(model.clone())).collect::<Result<_, _>>()?;
+        Ok(Engines { engines: std::iter::once(opened.engine).chain(others).collect(), on })
     }
 }
 

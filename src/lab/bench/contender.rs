@@ -80,6 +80,14 @@ impl Contender {
     /// What all others are compared with.
     pub const BASELINE: Contender = NOTE;
 
+    /// Those with one of `engines`, or all where none is given. Of a sweep over windows only those that have them, and
+    /// the baseline.
+    pub fn of(engines: &[&EngineKind], is_over_windows: bool) -> Vec<Contender> {
+        let asked = |c: &Contender| engines.is_empty() || engines.contains(&c.engine);
+        let fits = |c: &Contender| !is_over_windows || c.is_windowed() || c.is_baseline();
+        CONTENDERS.into_iter().filter(|c| asked(c) && fits(c)).collect()
+    }
+
     /// The engine and its variant, as messages name them.
     pub fn name(&self) -> String {
         format!("{} ({})", self.engine.name, self.variant)

@@ -2,12 +2,16 @@
 
 use std::time::Duration;
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use super::agreement::Agreement;
 use super::contender::{CPU, Contender, Gear};
 use super::runner::Runner;
 use super::setting::Work;
 use super::{BenchError, Setting};
 use crate::engine::{Cpu, Engine, EngineError, Job, Phase};
+use crate::gpu::Device;
 use crate::lab::Spread;
 use crate::trace::SettledTrace;
 
@@ -29,6 +33,14 @@ pub struct Progress {
     pub total: usize,
     /// What runs next.
     pub contender: Contender,
+}
+
+/// What a bench is at.
+pub enum Stage<'a> {
+    /// Walks in this setting's scene are about to be made.
+    Walking(&'a Setting),
+    /// A contender is about to run.
+    Runs(Progress),
 }
 
 /// What one contender came to on one setting.
@@ -65,7 +77,7 @@ pub struct Row {
 }
 
 /// How much faster than the baseline a contender is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Relative {
     /// The ratio of the medians: above 1 where the contender is faster.
     pub ratio: f64,
@@ -74,9 +86,10 @@ pub struct Relative {
 }
 
 /// A contender that could not be measured.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Skipped {
     /// Its name.
+    #[serde(rename = "engine")]
     pub contender: String,
     /// Why.
     pub why: String,
@@ -162,6 +175,34 @@ pub fn measure(
         rows: lanes.iter().filter_map(|lane| lane.row(work, baseline.as_deref())).collect(),
         skipped: skipped.into_iter().map(|(c, why)| Skipped { contender: c.name(), why }).collect(),
     })
+}
+
+/// Measures `contenders` on each of `settings`, one after the other. `watch` hears of each setting before its walks are
+/// made, and of every run before it; runs are counted over all settings.
+///
+/// # Errors
+///
+/// Those of [`measure`], and a scene or a walk that is at fault, which should not happen.
+pub fn measure_all(
+    settings: &[Setting],
+    contenders: &[Contender],
+    device: Option<&Device>,
+    plan: &Plan,
+    watch: &mut dyn FnMut(Stage<'_>),
+) -> Result<Measured, BenchError> {
+    let mut all = Measured::default();
+    for (i, setting) in settings.iter().enumerate() {
+        watch(Stage::Walking(setting));
+        let gear = Gear { device: device.cloned(), window: setting.window };
+        let measured =
+            measure(&setting.work()?, contenders, &gear, plan, &mut |Progress { done, total, contender }| {
+                watch(Stage::Runs(Progress { done: i * total + done, total: settings.len() * total, contender }));
+            })?;
+        all.rows.extend(measured.rows);
+        let new: Vec<_> = measured.skipped.into_iter().filter(|s| !all.skipped.contains(s)).collect();
+        all.skipped.extend(new);
+    }
+    Ok(all)
 }
 
 /// What the engine `cpu` makes of `traces`, with which all runs on them are compared. Whether it is right itself, the

@@ -10,15 +10,19 @@
 
 mod agreement;
 mod contender;
+mod document;
 mod error;
 mod measure;
+mod report;
 mod runner;
 mod setting;
 
 pub use agreement::Disagreement;
 pub use contender::{CONTENDERS, Contender, Gear};
 pub(super) use contender::{CPU, FAST, FUNNEL, FUNNEL_FINAL, GPU, NOTE, NOTE_FURTHEST, REFERENCE};
+pub use document::{Document, Line, Ratio};
 pub use error::BenchError;
 pub(super) use measure::order;
-pub use measure::{Measured, Plan, Progress, Row, Skipped, measure};
+pub use measure::{Measured, Plan, Progress, Relative, Row, Skipped, Stage, measure, measure_all};
+pub use report::Report;
 pub use setting::{BenchScene, Setting, Sweep, SweepError, Work};

@@ -27,6 +27,12 @@ impl Method {
         Method { name: "reference", contender: REFERENCE },
     ];
 
+    /// Those with one of `engines`, or all where none is given.
+    pub fn of(engines: &[&EngineKind]) -> Vec<Method> {
+        let asked = |m: &Method| engines.is_empty() || engines.contains(&m.engine());
+        Self::ALL.into_iter().filter(asked).collect()
+    }
+
     /// The engine.
     pub fn engine(&self) -> &'static EngineKind {
         self.contender.engine

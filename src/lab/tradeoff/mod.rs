@@ -4,18 +4,22 @@
 //! rope. Times are those of the engine alone, per step of the traces as they are, whether or not a setting uses it;
 //! what a setting saves in reading and checking comes on top.
 
+mod document;
 mod error;
 mod measure;
 mod method;
 mod pareto;
 mod point;
+mod report;
 mod setting;
 mod truth;
 
-pub use error::TradeoffError;
+pub use document::{Document, Failure, Line};
+pub use error::{TradeoffError, WorkError};
 pub use measure::{Failed, Progress, Tradeoff, tradeoff};
 pub use method::Method;
 pub use point::{LengthError, Point};
+pub use report::Report;
 pub use setting::{Setting, Work};
 pub use truth::Answer;
 

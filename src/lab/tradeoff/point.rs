@@ -1,5 +1,8 @@
 //! One method at one setting.
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use super::setting::Setting;
 use super::truth::Answer;
 use crate::lab::Spread;
@@ -49,7 +52,7 @@ impl Point {
 }
 
 /// The error of a length, as a share of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct LengthError {
     /// Over the traces.
     pub mean: f64,

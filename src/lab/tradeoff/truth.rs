@@ -1,5 +1,8 @@
 //! What every trace really comes to, and how far from that a method is.
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use crate::engine::{Cpu, Engine, Job, REFERENCE, Reference};
 use crate::lab::bench::Disagreement;
 use crate::rope::{Event, EventKind, Side, TraceRecord};
@@ -138,13 +141,14 @@ impl Paired {
 }
 
 /// What a study would say: a mean over the traces.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Answer {
     /// By the method.
     pub value: f64,
     /// By the exact reference, over the same traces.
     pub truth: f64,
     /// The standard error of the exact mean because the traces are a sample; `None` for fewer than two.
+    #[serde(rename = "sampling_error")]
     pub sampling: Option<f64>,
 }
 

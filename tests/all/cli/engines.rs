@@ -64,6 +64,35 @@ fn neither_the_window_nor_keep_all_changes_anything() {
 }
 
 #[test]
+fn keep_all_is_refused_where_no_queries_are_asked() {
+    let folder = Folder::floor_plan(2, 20);
+    folder.write("s.toml", "[scene]\nbuilt_in = \"rooms\"\n[walk]\nkind = \"uniform\"\nstep = 0.3\nsteps = 9\n");
+    for engine in ["reference", "funnel", "note"] {
+        let why = format!("--keep-all goes with --engine gpu, cpu or auto: the engine {engine} asks no queries");
+        folder.refused(2, &format!("eval --scene s.geojson --traces t.csv --engine {engine} --keep-all"), &[&why]);
+        folder.refused(2, &format!("study run s.toml --out s --engine {engine} --keep-all"), &[&why]);
+    }
+    assert!(!folder.path("s").exists());
+    folder.done("study run s.toml --count 20 --out s --engine cpu --keep-all");
+    folder.refused(
+        2,
+        "study resume s --engine reference --keep-all",
+        &["--keep-all goes with --engine gpu, cpu or auto"],
+    );
+}
+
+#[test]
+fn all_anchors_of_a_study_share_a_device() {
+    let folder = Folder::floor_plan(2, 20);
+    let walk = "[walk]\nkind = \"uniform\"\nstep = 0.3\nsteps = 30\n[run]\ntraces = 60\nblock = 10\n";
+    folder.write("s.toml", format!("[scene]\nfile = \"s.geojson\"\nanchor = {{ sample = 3 }}\n{walk}"));
+    let gpu = folder.done("study run s.toml --out gpu --engine gpu --adapter software");
+    assert_eq!(gpu.stderr.matches("engine: gpu on ").count(), 1, "{}", gpu.stderr);
+    folder.done("study run s.toml --out cpu --engine cpu");
+    assert!(folder.read("gpu/summary.json") == folder.read("cpu/summary.json"));
+}
+
+#[test]
 fn the_number_of_threads_changes_nothing() {
     let folder = Folder::floor_plan(60, 100);
     let write = |threads: &str| {

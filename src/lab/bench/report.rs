@@ -1,18 +1,45 @@
-//! A bench as tables.
+//! A bench as people read it: the [`Display`](fmt::Display) of a report is its tables.
 
-use tautline::engine::Phase;
-use tautline::environment::Environment;
-use tautline::lab::Spread;
-use tautline::lab::bench::{Plan, Row, Setting, Sweep};
+use std::fmt;
 
-use super::super::words::{counted, grouped, short};
+use super::measure::{Measured, Plan, Row};
+use super::setting::{Setting, Sweep};
+use crate::engine::Phase;
+use crate::environment::Environment;
+use crate::lab::surroundings::head;
+use crate::words::{NONE, aligned, counted, grouped, short};
 
-/// What stands where there is no number.
-const NONE: &str = "-";
+/// What came of a bench, and where and how it was made.
+pub struct Report {
+    /// Where.
+    pub environment: Environment,
+    /// What was swept over, if anything was.
+    pub sweep: Option<Sweep>,
+    /// The setting, or that which the sweep changes.
+    pub base: Setting,
+    /// How much was measured.
+    pub plan: Plan,
+    /// What came of it.
+    pub measured: Measured,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Setting { traces, steps, seed, .. } = self.base;
+        let runs = counted(self.plan.repeats as u64, "run", "runs");
+        let [traces, steps] = [traces, steps as u64].map(grouped);
+        f.write_str(&head(&self.environment))?;
+        writeln!(f, "work      {traces} traces of {steps} steps, seed {seed}; {runs} each, interleaved")?;
+        f.write_str(&match self.sweep {
+            None => side_by_side(&self.base, &self.measured.rows),
+            Some(sweep) => swept(sweep, &self.base, &self.measured.rows),
+        })
+    }
+}
 
 /// All engines on one setting: how fast, what they did, and where the time went.
-pub(super) fn bench(environment: &Environment, setting: &Setting, plan: &Plan, rows: &[Row]) -> String {
-    let mut text = head(environment, setting, plan);
+fn side_by_side(setting: &Setting, rows: &[Row]) -> String {
+    let mut text = String::new();
     if let Some(row) = rows.first() {
         let (n, step) = (grouped(row.n as u64), short(setting.step));
         text += &format!("scene     {}: {n} wall ends; steps of about {step}\n\n", setting.scene.name());
@@ -25,7 +52,7 @@ pub(super) fn bench(environment: &Environment, setting: &Setting, plan: &Plan, r
     };
     text += &table(&names, &["steps/s", "ns/step", "min..max", "x note", "min..max"], rows, name, |row| {
         let [ratio, paired] = relative(row);
-        [rate(row.steps_per_second()), short(row.ns_per_step.median), range(row.ns_per_step), ratio, paired]
+        [rate(row.steps_per_second()), short(row.ns_per_step.median), row.ns_per_step.to_string(), ratio, paired]
     });
     let names = ["engine", "variant"];
     let name = |row: &Row| [row.contender.engine.name.to_owned(), variant(row)];
@@ -46,15 +73,14 @@ pub(super) fn bench(environment: &Environment, setting: &Setting, plan: &Plan, r
 }
 
 /// All engines on every value of a sweep.
-pub(super) fn sweep(environment: &Environment, sweep: Sweep, base: &Setting, plan: &Plan, rows: &[Row]) -> String {
-    let mut text = head(environment, base, plan);
+fn swept(sweep: Sweep, base: &Setting, rows: &[Row]) -> String {
     let swept = match sweep {
         Sweep::Vertices => "n",
         Sweep::Batch => "batch",
         Sweep::Step => "step",
         Sweep::Window => "window",
     };
-    text += &format!("scene     {}; sweep over {swept}\n\n", base.scene.name());
+    let mut text = format!("scene     {}; sweep over {swept}\n\n", base.scene.name());
     let value = |row: &Row| match sweep {
         Sweep::Vertices => grouped(row.n as u64),
         Sweep::Batch => grouped(row.setting.traces),
@@ -70,25 +96,9 @@ pub(super) fn sweep(environment: &Environment, sweep: Sweep, base: &Setting, pla
         let tests = row.tests_avoided_per_step.map_or(NONE.to_owned(), |_| short(row.tests_per_step));
         let [ratio, _] = relative(row);
         let (ns, events) = (row.ns_per_step, short(row.events_per_step));
-        [rate(row.steps_per_second()), short(ns.median), range(ns), tests, events, ratio]
+        [rate(row.steps_per_second()), short(ns.median), ns.to_string(), tests, events, ratio]
     });
     text
-}
-
-fn head(environment: &Environment, setting: &Setting, plan: &Plan) -> String {
-    let adapter = environment.adapter.as_ref().map_or("none".to_owned(), ToString::to_string);
-    format!(
-        "machine   {}, {} threads; {}\n\
-         adapter   {adapter}\n\
-         work      {} traces of {} steps, seed {}; {} each, interleaved\n",
-        environment.processor,
-        environment.threads,
-        environment.os,
-        grouped(setting.traces),
-        grouped(setting.steps as u64),
-        setting.seed,
-        counted(plan.repeats as u64, "run", "runs"),
-    )
 }
 
 /// The variant, with the widest window where that counts.
@@ -100,11 +110,7 @@ fn variant(row: &Row) -> String {
 }
 
 fn relative(row: &Row) -> [String; 2] {
-    row.relative.map_or([NONE; 2].map(str::to_owned), |r| [short(r.ratio), range(r.paired)])
-}
-
-pub(in crate::cli) fn range(spread: Spread) -> String {
-    format!("{}..{}", short(spread.min), short(spread.max))
+    row.relative.map_or([NONE; 2].map(str::to_owned), |r| [short(r.ratio), r.paired.to_string()])
 }
 
 /// A number a second, in whole ones where there are many.
@@ -124,22 +130,4 @@ fn table<const A: usize, const B: usize>(
     let heading: Vec<String> = names.iter().chain(numbers).map(|&text| text.to_owned()).collect();
     let cells = rows.iter().map(|row| name(row).into_iter().chain(number(row)).collect());
     aligned(A, &std::iter::once(heading).chain(cells).collect::<Vec<_>>())
-}
-
-/// Lines of as many cells, all columns as wide as they need be: the first `left` stand on the left, the others on the
-/// right.
-pub(in crate::cli) fn aligned(left: usize, lines: &[Vec<String>]) -> String {
-    let columns = lines.first().map_or(0, Vec::len);
-    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut text = String::new();
-    for line in lines {
-        let padded = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column < left {
-            true => format!("{cell:width$}"),
-            false => format!("{cell:>width$}"),
-        });
-        text += padded.collect::<Vec<_>>().join("  ").trim_end();
-        text.push('\n');
-    }
-    text
 }
