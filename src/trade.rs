@@ -9,9 +9,10 @@ use crate::geometry::number;
 use crate::scene::Model;
 use crate::simplify::{SimplifyError, simplify};
 use crate::trace::{SettledTrace, Trace, settle_owned};
+use crate::words::{counted, grouped};
 
 /// What accuracy is given for speed. The default gives none.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Trade {
     /// Of so many points of a trace one is used, where no wall is in the way of the longer step: at least 1, which uses
     /// all. See [`SettledTrace::coarsened`].
@@ -53,6 +54,32 @@ impl Trade {
     #[must_use]
     pub fn coarsened(self, trace: SettledTrace, used: &Model) -> SettledTrace {
         if self.is_any() { trace.coarsened(used, self.stride as usize) } else { trace }
+    }
+
+    /// What was given and what that came to, in a line.
+    ///
+    /// ```
+    /// use tautline::trade::{Trade, Traded};
+    /// let words = Trade { stride: 4, simplify: None }.words(&Traded::default());
+    /// assert_eq!(words, "of every 4 points one (0 longer steps would touch a wall and are walked as given)");
+    /// ```
+    pub fn words(self, traded: &Traded) -> String {
+        let mut words = Vec::new();
+        if self.stride > 1 {
+            let one = "longer step would touch a wall and is walked as given";
+            let jumps = counted(traded.jumps, one, "longer steps would touch a wall and are walked as given");
+            words.push(format!("of every {} points one ({jumps})", self.stride));
+        }
+        if let Some(tolerance) = self.simplify {
+            let [before, left] = [traded.vertices, traded.vertices_left].map(grouped);
+            let traces = counted(traded.crossing_traces, "trace crosses", "traces cross");
+            let steps = counted(traded.crossing_steps, "step", "steps");
+            words.push(format!(
+                "walls simplified by at most {}, {left} of {before} wall ends left ({traces} one, in {steps})",
+                number(tolerance)
+            ));
+        }
+        words.join("; ")
     }
 
     /// What results say of themselves, key by key: nothing if they are exact.

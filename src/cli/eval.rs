@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use tautline::engine::{Engine, Job, Precision};
 use tautline::output::check_output;
-use tautline::stream::{Batches, Files, Stage, evaluate};
+use tautline::stream::{Account, Batches, Files, Stage, evaluate};
 use tautline::trade::Terms;
 
 use super::engine::EngineArgs;
@@ -13,7 +13,7 @@ use super::failure::Failure;
 use super::input::{InputArgs, dropped};
 use super::paths::keep_apart;
 use super::progress::{Progress, with_progress};
-use super::summary::Summary;
+use super::summary::table;
 use super::trade::TradeArgs;
 use super::{print, print_json};
 
@@ -60,11 +60,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = args.input.source()?;
     let (mut engine, on) = args.engine.open(model)?;
     let batches = Batches::start(source, terms.clone(), engine.batch());
-    let mut summary = Summary::new(&args.input.name(), &terms.given, &*engine, on);
-    if terms.trade.is_any() {
-        summary.trade(terms.trade, model);
-    }
-    summary.label(model);
+    let mut account = Account::new(&args.input.name(), &terms, &*engine, on);
     let files = Files::new(args.out.as_deref(), args.events.as_deref(), model, notes(&terms, &*engine));
     let mut violations = args.input.violations();
     let (job, progress, policy) = (Job::new(), Progress::new(batches.size()), violations.policy());
@@ -73,18 +69,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             violations.flag(settled);
             progress.begin(position, settled.iter().map(|t| t.steps() as u64).sum());
         }
-        Stage::Evaluated { settled, records } => summary.add(model, settled, records),
+        Stage::Evaluated { settled, records } => account.add(settled, records),
     };
     let outcome = with_progress(&progress, &job, || evaluate(batches, &mut *engine, files, policy, &job, watch));
     let times = outcome.map_err(|error| violations.failure(error))?;
     violations.finish();
-    summary.learn(&*engine);
-    let total = start.elapsed();
+    let report = account.report(&*engine, &times, start.elapsed());
     if args.json {
-        print_json(&summary.json(&times, total))
-    } else {
-        print(&summary.table(&times, total, args.out.is_none()))
+        return print_json(&report);
     }
+    let hint = "--out FILE writes every trace's rope, --events FILE every wrap and unwrap\n";
+    print(&format!("{}{}", table(&report), if args.out.is_none() { hint } else { "" }))
 }
 
 /// What results say of themselves: nothing if they are exact.

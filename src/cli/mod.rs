@@ -22,7 +22,6 @@ mod parse;
 mod paths;
 mod progress;
 mod queries;
-mod spread;
 mod study;
 mod summary;
 mod trade;

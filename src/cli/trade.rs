@@ -1,13 +1,11 @@
 //! What accuracy is given for speed, whatever the engine.
 
 use anyhow::anyhow;
-use tautline::geometry::number;
 use tautline::scene::Model;
-use tautline::trade::{Terms, Trade, Traded};
+use tautline::trade::{Terms, Trade};
 
 use super::failure::Failure;
 use super::parse::{above_zero, stride};
-use super::words::{counted, grouped};
 
 /// What accuracy is given for speed.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -30,24 +28,4 @@ impl TradeArgs {
     pub(crate) fn terms(&self, name: &str, model: Model) -> Result<Terms, Failure> {
         Terms::new(model, self.trade()).map_err(|e| Failure::input(anyhow!("--simplify: {name}: {e}")))
     }
-}
-
-/// What was traded and what that came to, in a line.
-pub(crate) fn words(trade: Trade, traded: &Traded) -> String {
-    let mut words = Vec::new();
-    if trade.stride > 1 {
-        let one = "longer step would touch a wall and is walked as given";
-        let jumps = counted(traded.jumps, one, "longer steps would touch a wall and are walked as given");
-        words.push(format!("of every {} points one ({jumps})", trade.stride));
-    }
-    if let Some(tolerance) = trade.simplify {
-        let [before, left] = [traded.vertices, traded.vertices_left].map(grouped);
-        let traces = counted(traded.crossing_traces, "trace crosses", "traces cross");
-        let steps = counted(traded.crossing_steps, "step", "steps");
-        words.push(format!(
-            "walls simplified by at most {}, {left} of {before} wall ends left ({traces} one, in {steps})",
-            number(tolerance)
-        ));
-    }
-    words.join("; ")
 }

@@ -20,6 +20,11 @@ pub trait Engine: Send {
         Some(Precision::Certified)
     }
 
+    /// The same as reports name it: `f64` for `None`.
+    fn precision_name(&self) -> &'static str {
+        self.precision().map_or("f64", Precision::name)
+    }
+
     /// Evaluates all `traces`, settled against the engine's model, and returns their records in the same order.
     ///
     /// Counts finished steps in `job` as it goes, and ends early when the job is stopped.

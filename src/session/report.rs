@@ -23,8 +23,7 @@ pub struct Computed {
 impl Computed {
     /// By `engine`, which ran `on` that.
     pub fn by(engine: &dyn Engine, on: &str) -> Self {
-        let precision = engine.precision().map_or("f64", Precision::name);
-        Computed { engine: engine.name(), precision, on: on.to_owned() }
+        Computed { engine: engine.name(), precision: engine.precision_name(), on: on.to_owned() }
     }
 }
 

@@ -31,8 +31,12 @@ mod batches;
 mod error;
 mod evaluate;
 mod files;
+mod report;
+mod statistics;
 
 pub use batches::{Batch, Batches, Source};
 pub use error::StreamError;
 pub use evaluate::{OnViolation, Stage, Times, evaluate};
 pub use files::Files;
+pub use report::{Account, Report, SceneReport, Seconds, Touched, TradedReport};
+pub use statistics::Statistics;

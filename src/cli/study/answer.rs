@@ -9,7 +9,7 @@ use tautline::study::{AtWalls, Estimate, Stopped, Summary, quantity};
 
 use crate::cli::failure::Failure;
 use crate::cli::words::{counted, grouped, short};
-use crate::cli::{print, print_json, trade};
+use crate::cli::{print, print_json};
 
 /// Prints an answer as its file has it.
 pub(super) fn print_answer(summary: &Summary) -> Result<(), Failure> {
@@ -64,7 +64,7 @@ pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
         ));
     }
     if let Some(traded) = &summary.traded {
-        line(format_args!("traded: {}", trade::words(summary.study.run.trade(), traded)));
+        line(format_args!("traded: {}", summary.study.run.trade().words(traded)));
     }
     if let Some(scene) = run.map(|run| &run.scene)
         && let Some(&tried) = scene.remaining.iter().flatten().max()

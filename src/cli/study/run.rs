@@ -17,7 +17,6 @@ use crate::cli::input::{note, warn};
 use crate::cli::interrupt::{Guard, Last};
 use crate::cli::print;
 use crate::cli::progress::{Progress, with_progress};
-use crate::cli::summary::precision;
 use crate::cli::trade::TradeArgs;
 use crate::cli::words::plainly;
 
@@ -217,7 +216,7 @@ impl Engines {
 fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     let plan = study.plan();
     let Engines { mut engines, on } = Engines::open(&args.engine, study)?;
-    let (name, precision) = (engines[0].name(), precision(&*engines[0]));
+    let (name, precision) = (engines[0].name(), engines[0].precision_name());
     let state = Mutex::new(State::new(study, args.shard));
     let clock = Instant::now();
     let mut first = None;
