@@ -1,7 +1,7 @@
 //! `tautline adapters`.
 
 use serde_json::{Value, json};
-use tautline::gpu::{AdapterKind, Arithmetic, Computed, GpuError, SOFTWARE_HINT, driver_faults, open_all};
+use tautline::gpu::{AdapterKind, Arithmetic, GpuError, SOFTWARE_HINT, driver_faults, open_all};
 
 use super::failure::Failure;
 use super::{print, print_json};
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         text += &format!("number  {:width$}  {:10}  {:7}  driver\n", "adapter", "type", "backend");
         for (a, f32) in &opened {
             text += &format!("{:6}  {:width$}  {:10}  {:7}  {}\n", a.number, a.name, a.kind, a.backend, a.driver);
-            text += &format!("        f32: {}\n", words(f32));
+            text += &format!("        f32: {}\n", f32.as_ref().map_or_else(ToString::to_string, ToString::to_string));
         }
     }
     for fault in driver_faults() {
@@ -72,29 +72,4 @@ fn described(found: &Result<Arithmetic, GpuError>) -> Value {
 fn shapes(f32: &Arithmetic) -> Value {
     let all = f32.shapes.iter().map(|(shape, computed)| ((*shape).to_owned(), json!(computed.to_string())));
     Value::Object(all.collect())
-}
-
-/// The same for people.
-fn words(found: &Result<Arithmetic, GpuError>) -> String {
-    let f32 = match found {
-        Ok(f32) => f32,
-        Err(error) => return error.to_string(),
-    };
-    if let Some(fault) = &f32.fault {
-        return format!("fit for precision fast only: {fault}");
-    }
-    let rounds = if f32.rounds_to_nearest { "rounds to nearest" } else { "rounds either way" };
-    let fuses = if f32.fuses { "fuses" } else { "fuses nothing" };
-    let flushes = if f32.flushes { "flushes subnormals" } else { "keeps subnormals" };
-    let rewritten = f32.shapes.iter().filter(|(_, computed)| *computed > Computed::Fused);
-    let rewritten: Vec<&str> = rewritten.map(|(shape, _)| *shape).collect();
-    let order = if rewritten.is_empty() {
-        "computes all sums as they are written".to_owned()
-    } else {
-        format!("rewrites {} of {} shapes of sums: {}", rewritten.len(), f32.shapes.len(), rewritten.join(", "))
-    };
-    let error = 100.0 * f32.largest_error;
-    format!(
-        "fit for exact ropes, with errors of at most {error:.0} % of the bound; {rounds}, {fuses}, {flushes}, {order}"
-    )
 }

@@ -92,7 +92,7 @@ impl SweepName {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (base, sweep) = (args.setting()?, args.sweep.map(SweepName::sweep));
     let settings = match sweep {
-        Some(sweep) => sweep.settings(&base).map_err(|e| Failure::input(e.into()))?,
+        Some(sweep) => sweep.settings(&base)?,
         None => vec![base.clone()],
     };
     let plan = Plan { repeats: args.repeats as usize, run: Duration::from_secs_f64(args.seconds) };

@@ -1,12 +1,11 @@
 //! `tautline check`.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use anyhow::anyhow;
-use serde_json::{Value, json};
+use serde_json::json;
 use tautline::picture::Drawing;
-use tautline::scene::{Inside, Model, Scene};
+use tautline::scene::{Description, Model, Scene};
 use tautline::stream::Batches;
 use tautline::study::anchor_warnings;
 use tautline::trace::{Violation, ViolationKind};
@@ -68,17 +67,19 @@ fn save_picture(target: Option<&Target>, drawing: &Drawing<'_>, look: &Look) -> 
 
 /// Says what there is.
 fn report(args: &Args, scene: &Scene, model: Option<&Model>, counts: Option<&Counts>) -> Result<(), Failure> {
-    let described = Described::new(scene);
+    let described = scene.describe();
     if args.json {
-        return print_json(&json!({
-            "scene": described.json(&args.input.name(), scene, model),
-            "traces": counts.map(|c| {
-                let violations: Vec<_> = c.violations.iter().map(violation).collect();
-                json!({"traces": c.traces, "steps": c.steps, "violations": violations})
-            }),
-        }));
+        let mut scene = json!(described);
+        scene["name"] = json!(args.input.name());
+        scene["anchor"] = json!(model.map(|m| m.anchor().to_array()));
+        scene["warnings"] = json!(model.map_or(Vec::new(), anchor_warnings));
+        let traces = counts.map(|c| {
+            let violations: Vec<_> = c.violations.iter().map(violation).collect();
+            json!({"traces": c.traces, "steps": c.steps, "violations": violations})
+        });
+        return print_json(&json!({"scene": scene, "traces": traces}));
     }
-    let mut text = described.table(&args.input, scene, model);
+    let mut text = table(&described, &args.input, model);
     if let Some(Counts { traces, steps, crossing, .. }) = counts {
         text += &format!("traces  {traces}, {steps} steps; {crossing} of the traces cross walls\n");
     }
@@ -88,79 +89,42 @@ fn report(args: &Args, scene: &Scene, model: Option<&Model>, counts: Option<&Cou
     print(&text)
 }
 
-/// What a scene is made of.
-struct Described<'a> {
-    /// How many walls belong to something solid.
-    solid: usize,
-    layers: BTreeMap<&'a str, usize>,
-    /// For each label, how many walls it stands for.
-    labels: BTreeMap<&'a str, usize>,
-    /// What the reader says a unit is.
-    unit: Option<&'a str>,
+fn table(scene: &Description, input: &InputArgs, model: Option<&Model>) -> String {
+    let anchor = model.map_or("no anchor".to_owned(), |m| format!("anchor {}", place(m.anchor())));
+    let vertices = counted(scene.vertices as u64, "vertex", "vertices");
+    let mut text = format!("scene   {}: {}, {vertices}, {anchor}\n", input.name(), walls(scene.walls));
+    if model.is_none() {
+        text += &format!("        to tie a rope, {}\n", input.how_to_tie());
+    }
+    if scene.dropped > 0 {
+        text += &format!("        {}\n", dropped(scene.dropped));
+    }
+    if let Some([low, high]) = scene.bounds {
+        text += &format!("box     {} to {}; y points {}\n", place(low.into()), place(high.into()), scene.y);
+    }
+    text += &format!("unit    {}\n", scene.unit.as_deref().unwrap_or("the file's own"));
+    if scene.solid > 0 {
+        text += &format!("solid   {} of the walls are the border of something solid\n", scene.solid);
+    }
+    let layers = scene.layers.iter().map(|layer| (&layer.name, layer.walls)).collect();
+    let labels = scene.labels.iter().map(|label| (&label.label, label.walls)).collect();
+    text + &list("layers", layers) + &list("labels", labels)
 }
 
-impl<'a> Described<'a> {
-    fn new(scene: &'a Scene) -> Self {
-        let (mut solid, mut labels) = (0, BTreeMap::new());
-        for wall in 0..scene.walls().len() {
-            let object = &scene.objects()[scene.object_of(wall)];
-            solid += usize::from(object.inside != Inside::Free);
-            object.label.iter().for_each(|label| *labels.entry(label.as_str()).or_default() += 1);
-        }
-        let unit = scene.notes().iter().find_map(|note| note.strip_prefix("a unit is "));
-        let unit = unit.map(|unit| unit.split(';').next().unwrap_or(unit));
-        Described { solid, layers: scene.layers(), labels, unit }
+/// Names of one kind and how many walls each has, as many as a table takes.
+fn list(kind: &str, names: Vec<(&String, usize)>) -> String {
+    let mut text = String::new();
+    for (i, (name, count)) in names.iter().take(LISTED).enumerate() {
+        text += &format!("{:8}{name}: {}\n", if i == 0 { kind } else { "" }, walls(*count));
     }
+    if let Some(more @ 1..) = names.len().checked_sub(LISTED) {
+        text += &format!("        and {more} more {kind}\n");
+    }
+    text
+}
 
-    fn json(&self, name: &str, scene: &Scene, model: Option<&Model>) -> Value {
-        let named = |names: &BTreeMap<&str, usize>, key: &str| -> Vec<Value> {
-            names.iter().map(|(name, walls)| json!({key: name, "walls": walls})).collect()
-        };
-        json!({
-            "name": name, "walls": scene.walls().len(), "vertices": scene.vertices().len(), "dropped": scene.dropped(),
-            "solid": self.solid, "box": scene.bounds().map(|(low, high)| [low.to_array(), high.to_array()]),
-            "unit": self.unit, "y": if scene.y_down() { "down" } else { "up" },
-            "layers": named(&self.layers, "name"), "labels": named(&self.labels, "label"),
-            "anchor": model.map(|m| m.anchor().to_array()), "warnings": model.map_or(Vec::new(), anchor_warnings),
-            "notes": scene.notes(),
-        })
-    }
-
-    fn table(&self, input: &InputArgs, scene: &Scene, model: Option<&Model>) -> String {
-        let anchor = model.map_or("no anchor".to_owned(), |m| format!("anchor {}", place(m.anchor())));
-        let mut text = format!(
-            "scene   {}: {}, {}, {anchor}\n",
-            input.name(),
-            counted(scene.walls().len() as u64, "wall", "walls"),
-            counted(scene.vertices().len() as u64, "vertex", "vertices"),
-        );
-        if model.is_none() {
-            text += &format!("        to tie a rope, {}\n", input.how_to_tie());
-        }
-        if scene.dropped() > 0 {
-            text += &format!("        {}\n", dropped(scene.dropped()));
-        }
-        if let Some((low, high)) = scene.bounds() {
-            text += &format!("box     {} to {}", place(low), place(high));
-            text += &format!("; y points {}\n", if scene.y_down() { "down" } else { "up" });
-        }
-        text += &format!("unit    {}\n", self.unit.unwrap_or("the file's own"));
-        if self.solid > 0 {
-            text += &format!("solid   {} of the walls are the border of something solid\n", self.solid);
-        }
-        let mut list = |name: &str, what: &str, names: &BTreeMap<&str, usize>| {
-            for (i, (label, walls)) in names.iter().take(LISTED).enumerate() {
-                let walls = counted(*walls as u64, "wall", "walls");
-                text += &format!("{:8}{label}: {walls}\n", if i == 0 { name } else { "" });
-            }
-            if let Some(more @ 1..) = names.len().checked_sub(LISTED) {
-                text += &format!("        and {more} more {what}\n");
-            }
-        };
-        list("layers", "layers", &self.layers);
-        list("labels", "labels", &self.labels);
-        text
-    }
+fn walls(count: usize) -> String {
+    counted(count as u64, "wall", "walls")
 }
 
 /// What there is in a file of traces.

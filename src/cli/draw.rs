@@ -5,23 +5,18 @@ use std::sync::Arc;
 
 use anyhow::anyhow;
 use tautline::engine::{Cpu, Engine, Job};
-use tautline::example::some_walks;
 use tautline::output::write_whole;
 use tautline::picture::{Drawing, Situation};
 use tautline::rope::TraceRecord;
 use tautline::scene::Model;
-use tautline::stream::Source;
-use tautline::trace::{SettledTrace, Trace, TraceReader, settle_owned};
+use tautline::stream::PickError;
+use tautline::trace::{SettledTrace, settle_owned};
 
 use super::failure::Failure;
 use super::input::InputArgs;
 use super::look::{Look, Target, write};
 use super::paths::keep_apart;
 use super::print;
-
-/// How many traces, and points of them, are read at a time.
-const TRACES: usize = 8192;
-const POINTS: usize = 1 << 22;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -77,46 +72,14 @@ fn drawing<'a>(model: &'a Model, settled: &[SettledTrace], records: &'a [TraceRe
 
 /// The traces that are wanted, in the order of their numbers.
 fn traces(args: &Args, model: &Model) -> Result<Vec<SettledTrace>, Failure> {
-    let mut wanted = args.wanted.clone();
-    wanted.sort_unstable();
-    wanted.dedup();
-    let found = match args.input.source()? {
-        Source::File(reader) => find(reader, &wanted, args.input.traces.as_deref().unwrap_or(Path::new("")))?,
-        Source::Walks(walker, numbers) => {
-            if let Some(id) = wanted.iter().find(|id| !numbers.contains(id)) {
-                let last = numbers.end - 1;
-                return Err(Failure::input(anyhow!(
-                    "the built-in example has traces 0 to {last}, so there is no {id}"
-                )));
-            }
-            let wanted = if wanted.is_empty() { vec![0] } else { wanted };
-            wanted.into_iter().flat_map(|id| some_walks(model, walker, id..id + 1)).collect()
+    let found = args.input.source()?.pick(&args.wanted, model).map_err(|error| match (error, &args.input.traces) {
+        (PickError::Read(error), _) => error.into(),
+        (PickError::Missing { trace, last, .. }, None) => {
+            Failure::input(anyhow!("the built-in example has traces 0 to {last}, so there is no {trace}"))
         }
-    };
+        (error, path) => Failure::input(anyhow!("{}: {error}", path.as_deref().unwrap_or(Path::new("")).display())),
+    })?;
     Ok(found.into_iter().map(|trace| settle_owned(model, trace)).collect())
-}
-
-/// Reads up to the last trace that is wanted; without any, the first.
-fn find(mut reader: TraceReader, wanted: &[u64], path: &Path) -> Result<Vec<Trace>, Failure> {
-    let mut found: Vec<Trace> = Vec::new();
-    let mut range: Option<(u64, u64)> = None;
-    while found.len() < wanted.len().max(1) {
-        let Some(batch) = reader.next_batch(TRACES, POINTS)? else { break };
-        for trace in batch {
-            range = Some((range.map_or(trace.id, |r| r.0), trace.id));
-            if wanted.contains(&trace.id) || (wanted.is_empty() && found.is_empty()) {
-                found.push(trace);
-            }
-        }
-    }
-    let shown = path.display();
-    match (range, wanted.iter().find(|&&id| found.iter().all(|t| t.id != id))) {
-        (None, _) => Err(Failure::input(anyhow!("{shown}: there are no traces in it"))),
-        (Some((first, last)), Some(id)) => Err(Failure::input(anyhow!(
-            "{shown}: there is no trace {id}; its traces have numbers from {first} to {last}"
-        ))),
-        _ => Ok(found),
-    }
 }
 
 fn gallery(folder: &Path) -> Result<(), Failure> {

@@ -7,6 +7,8 @@ use std::process::ExitCode;
 use tautline::ReadError;
 use tautline::engine::EngineError;
 use tautline::gpu::GpuError;
+use tautline::lab::bench::SweepError;
+use tautline::lab::tradeoff::WorkError;
 use tautline::output::WriteError;
 use tautline::picture::DrawError;
 use tautline::scene::AnchorError;
@@ -83,35 +85,18 @@ impl fmt::Display for Failure {
     }
 }
 
-impl From<ReadError> for Failure {
-    fn from(error: ReadError) -> Self {
-        Failure::input(error.into())
-    }
+/// Errors that are the input's fault, whatever they say.
+macro_rules! input {
+    ($($Error:ty),*) => {
+        $(impl From<$Error> for Failure {
+            fn from(error: $Error) -> Self {
+                Failure::input(error.into())
+            }
+        })*
+    };
 }
 
-impl From<PlanError> for Failure {
-    fn from(error: PlanError) -> Self {
-        Failure::input(error.into())
-    }
-}
-
-impl From<StateError> for Failure {
-    fn from(error: StateError) -> Self {
-        Failure::input(error.into())
-    }
-}
-
-impl From<AnchorError> for Failure {
-    fn from(error: AnchorError) -> Self {
-        Failure::input(error.into())
-    }
-}
-
-impl From<DrawError> for Failure {
-    fn from(error: DrawError) -> Self {
-        Failure::input(error.into())
-    }
-}
+input!(ReadError, PlanError, StateError, AnchorError, DrawError, SweepError, WorkError);
 
 impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {

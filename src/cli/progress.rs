@@ -1,65 +1,27 @@
 //! Progress on stderr: a bar for work over a second, or a line now and then where stderr is no terminal.
 
 use std::io::{IsTerminal, Write, stderr};
-use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
 use tautline::engine::Job;
+pub(crate) use tautline::stream::Progress;
 
 /// How finely the bar is divided.
 const PARTS: u64 = 1000;
 
-/// How much of a source of traces has been evaluated.
-pub(crate) struct Progress {
-    /// Of the source, in its own unit; 0 if nobody knows.
-    size: u64,
-    batch: Mutex<Span>,
-}
-
-/// A batch under way: which part of the source it is, and how many steps were done before it and are in it.
-#[derive(Debug, Clone, Copy, Default)]
-struct Span {
-    start: u64,
-    end: u64,
-    before: u64,
-    steps: u64,
-}
-
-impl Progress {
-    /// Nothing of `size` has been evaluated.
-    pub(crate) fn new(size: u64) -> Self {
-        Progress { size, batch: Mutex::default() }
-    }
-
-    /// Begins a batch of `steps` with which the source is read up to `end`.
-    pub(crate) fn begin(&self, end: u64, steps: u64) {
-        if let Ok(mut batch) = self.batch.lock() {
-            *batch = Span { start: batch.end, end, before: batch.before + batch.steps, steps };
-        }
-    }
-
-    /// How many thousandths are done once `done` steps are.
-    fn parts(&self, done: u64) -> u64 {
-        let batch = self.batch.lock().map_or_else(|_| Span::default(), |batch| *batch);
-        let share = done.saturating_sub(batch.before) as f64 / batch.steps.max(1) as f64;
-        let read = batch.start as f64 + (batch.end - batch.start) as f64 * share.min(1.0);
-        (PARTS as f64 * read / self.size.max(1) as f64) as u64
-    }
-
-    /// What a line says once `steps` steps are done.
-    fn line(&self, steps: u64, elapsed: Duration) -> String {
-        let rate = (steps as f64 / elapsed.as_secs_f64().max(1e-9)) as u64;
-        let done = format!("{} steps, {}/s", HumanCount(steps), HumanCount(rate));
-        match self.parts(steps).min(PARTS) {
-            _ if self.size == 0 => format!("progress: {done}"),
-            0 => format!("progress: 0 %, {done}"),
-            parts => {
-                let left = elapsed.mul_f64((PARTS - parts) as f64 / parts as f64);
-                format!("progress: {} %, {done}, about {} left", parts / 10, HumanDuration(left))
-            }
+/// What a line says once `steps` steps are done.
+fn line(progress: &Progress, steps: u64, elapsed: Duration) -> String {
+    let rate = (steps as f64 / elapsed.as_secs_f64().max(1e-9)) as u64;
+    let done = format!("{} steps, {}/s", HumanCount(steps), HumanCount(rate));
+    match progress.parts(steps, PARTS).min(PARTS) {
+        _ if progress.size() == 0 => format!("progress: {done}"),
+        0 => format!("progress: 0 %, {done}"),
+        parts => {
+            let left = elapsed.mul_f64((PARTS - parts) as f64 / parts as f64);
+            format!("progress: {} %, {done}, about {} left", parts / 10, HumanDuration(left))
         }
     }
 }
@@ -87,7 +49,7 @@ fn show_bar(progress: &Progress, job: &Job, waiting: &Receiver<()>) {
     if waiting.recv_timeout(Duration::from_secs(1)) != Err(RecvTimeoutError::Timeout) {
         return;
     }
-    let (bar, style) = match progress.size {
+    let (bar, style) = match progress.size() {
         0 => (ProgressBar::no_length(), "{spinner} {msg}"),
         _ => (ProgressBar::new(PARTS), "{wide_bar} {percent} %, {msg}, {eta} left"),
     };
@@ -97,7 +59,7 @@ fn show_bar(progress: &Progress, job: &Job, waiting: &Receiver<()>) {
         let steps = job.steps();
         let rate = (steps as f64 / bar.elapsed().as_secs_f64()) as u64;
         bar.set_message(format!("{} steps, {}/s", HumanCount(steps), HumanCount(rate)));
-        bar.set_position(progress.parts(steps).min(PARTS));
+        bar.set_position(progress.parts(steps, PARTS).min(PARTS));
     }
     bar.finish_and_clear();
 }
@@ -122,7 +84,7 @@ fn write_lines(
             return;
         }
         // Nobody may be listening any more; the work is done all the same.
-        let _ = writeln!(out, "{}", progress.line(job.steps(), start.elapsed()));
+        let _ = writeln!(out, "{}", line(progress, job.steps(), start.elapsed()));
     }
 }
 
@@ -176,27 +138,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_batch_counts_as_far_as_its_steps_are_done() {
-        let progress = Progress::new(200);
-        assert_eq!(progress.parts(0), 0);
-        progress.begin(100, 50);
-        assert_eq!([0, 25, 50, 60].map(|steps| progress.parts(steps)), [0, 250, 500, 500]);
-        progress.begin(200, 0);
-        assert_eq!(progress.parts(50), 500);
-        let unknown = Progress::new(0);
-        unknown.begin(7, 3);
-        assert!(unknown.parts(3) >= PARTS);
-    }
-    #[test]
     fn lines_come_at_growing_intervals_and_say_how_far_it_is() {
         let seconds: Vec<u64> = gaps().take(7).map(|gap| gap.as_secs()).collect();
         assert_eq!(seconds, [10, 20, 40, 80, 120, 120, 120]);
         let progress = Progress::new(200);
         progress.begin(100, 50);
-        let line = |steps, seconds| progress.line(steps, Duration::from_secs(seconds));
-        assert_eq!(line(0, 10), "progress: 0 %, 0 steps, 0/s");
-        assert_eq!(line(25, 10), "progress: 25 %, 25 steps, 2/s, about 30 seconds left");
-        assert_eq!(Progress::new(0).line(6000, Duration::from_secs(3)), "progress: 6,000 steps, 2,000/s");
+        let said = |steps, seconds| line(&progress, steps, Duration::from_secs(seconds));
+        assert_eq!(said(0, 10), "progress: 0 %, 0 steps, 0/s");
+        assert_eq!(said(25, 10), "progress: 25 %, 25 steps, 2/s, about 30 seconds left");
+        assert_eq!(line(&Progress::new(0), 6000, Duration::from_secs(3)), "progress: 6,000 steps, 2,000/s");
     }
 
     #[test]

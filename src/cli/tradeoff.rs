@@ -141,7 +141,7 @@ impl Args {
                 "--traces {count}: give a file of traces; how many random walks there are says --count {count}"
             )));
         }
-        Work::given(scene, self.seed(), path).map_err(|e| Failure::input(e.into()))
+        Ok(Work::given(scene, self.seed(), path)?)
     }
 
     /// Measures, with its progress on stderr.

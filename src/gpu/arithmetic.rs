@@ -1,6 +1,7 @@
 //! What a device makes of f32, found out by asking it: the candidate pass relies on some of it.
 
 use std::cmp::Ordering;
+use std::fmt;
 
 use bytemuck::{Pod, Zeroable};
 
@@ -44,6 +45,30 @@ pub struct Arithmetic {
     pub largest_error: f64,
     /// What the candidate pass cannot live with.
     pub fault: Option<String>,
+}
+
+impl fmt::Display for Arithmetic {
+    /// What it is fit for, and how it computes.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(fault) = &self.fault {
+            return write!(f, "fit for precision fast only: {fault}");
+        }
+        let rounds = if self.rounds_to_nearest { "rounds to nearest" } else { "rounds either way" };
+        let fuses = if self.fuses { "fuses" } else { "fuses nothing" };
+        let flushes = if self.flushes { "flushes subnormals" } else { "keeps subnormals" };
+        let error = 100.0 * self.largest_error;
+        write!(
+            f,
+            "fit for exact ropes, with errors of at most {error:.0} % of the bound; {rounds}, {fuses}, {flushes}, "
+        )?;
+        let rewritten = self.shapes.iter().filter(|(_, computed)| *computed > Computed::Fused);
+        let rewritten: Vec<&str> = rewritten.map(|(shape, _)| *shape).collect();
+        if rewritten.is_empty() {
+            return f.write_str("computes all sums as they are written");
+        }
+        let (count, all) = (rewritten.len(), self.shapes.len());
+        write!(f, "rewrites {count} of {all} shapes of sums: {}", rewritten.join(", "))
+    }
 }
 
 impl Arithmetic {

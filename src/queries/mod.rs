@@ -6,6 +6,7 @@
 //!
 //! The format: Sturtevant, "Benchmarks for grid-based pathfinding", IEEE Trans. Comput. Intell. AI Games 4, 2012.
 
+mod answer;
 mod drive;
 
 use std::path::Path;
@@ -16,6 +17,7 @@ use crate::read_error::{Fault, Place, ReadError};
 use crate::read_file::{SCENE_MAX, read_text};
 use crate::scene::GridMap;
 
+pub use answer::{Answer, Bucket, QueryError, Report, Row, answer_all, buckets};
 pub use drive::{Drive, Driver};
 
 /// One row of a `.scen` file.

@@ -2,6 +2,7 @@
 
 mod cells;
 mod curves;
+mod description;
 mod dxf;
 mod extent;
 mod flattened;
@@ -35,6 +36,7 @@ use glam::DVec2;
 
 use crate::geometry::{CoordinateFault, check_point};
 
+pub use description::{Description, Label, Layer};
 pub use format::{SceneFormat, alternatives};
 pub use index::WallIndex;
 pub use model::{AnchorError, Model};

@@ -31,6 +31,8 @@ mod batches;
 mod error;
 mod evaluate;
 mod files;
+mod pick;
+mod progress;
 mod report;
 mod statistics;
 
@@ -38,5 +40,7 @@ pub use batches::{Batch, Batches, Source};
 pub use error::StreamError;
 pub use evaluate::{OnViolation, Stage, Times, evaluate};
 pub use files::Files;
+pub use pick::PickError;
+pub use progress::Progress;
 pub use report::{Account, Report, SceneReport, Seconds, Touched, TradedReport};
 pub use statistics::Statistics;
