@@ -41,6 +41,17 @@ pub enum GpuError {
     },
 }
 
+impl GpuError {
+    /// Whether there is no device for this job, which is known before anything is computed: another adapter may do, or
+    /// an engine without one. `false` for a device that failed on the way, which may do another time.
+    pub fn is_unfit(&self) -> bool {
+        match self {
+            GpuError::NoAdapter { .. } | GpuError::Unfit { .. } => true,
+            GpuError::Timeout { .. } | GpuError::Failed { .. } => false,
+        }
+    }
+}
+
 fn offer(found: &[AdapterSummary]) -> String {
     if found.is_empty() {
         return "none".to_owned();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::file_places::{explain, located, vanishing};
+use super::file_places::{explain, line_of, vanishing};
 use super::plan::{AnchorPlan, Plan};
 use super::plan_error::PlanError;
 use super::tally::Tallies;
@@ -25,7 +25,7 @@ impl Plan {
     ///
     /// What is wrong, with its line; for an unknown key, the one that it is most like.
     pub fn read(path: &Path) -> Result<Plan, PlanError> {
-        let text = read_text(path, SETTINGS_MAX).map_err(|e| PlanError::new(e.to_string()))?;
+        let text = read_text(path, SETTINGS_MAX)?;
         Plan::parse(&text).map_err(|e| e.at(path))
     }
 
@@ -40,13 +40,13 @@ impl Plan {
     /// let plan = Plan::parse(EXAMPLE)?;
     /// assert_eq!(plan.run.traces, Some(10_000));
     /// let wrong = EXAMPLE.replace("block", "blok");
-    /// assert!(Plan::parse(&wrong).unwrap_err().what.contains("did you mean `block`?"));
+    /// assert!(Plan::parse(&wrong).unwrap_err().what().contains("did you mean `block`?"));
     /// # Ok::<(), tautline::study::PlanError>(())
     /// ```
     pub fn parse(text: &str) -> Result<Plan, PlanError> {
-        let plan: Plan = toml::from_str(text).map_err(|e| PlanError::new(explain(text, &e)))?;
+        let plan: Plan = toml::from_str(text).map_err(|e| explain(text, &e))?;
         let checked = vanishing(text).map_or_else(|| plan.checked(), |what| Err(PlanError::new(what)));
-        checked.map_err(|e| PlanError::new(located(text, e.what)))
+        checked.map_err(|e| PlanError { line: e.key.as_deref().and_then(|key| line_of(text, key)), ..e })
     }
 
     /// The plan, if it can be carried out as far as can be told without its scene.
@@ -159,18 +159,20 @@ impl PlanError {
     #[must_use]
     pub fn in_file(self, path: &Path) -> Self {
         let text = read_text(path, SETTINGS_MAX).unwrap_or_default();
-        let what = located(&text, self.what.clone());
-        if self.path.is_some() || what == self.what { self } else { PlanError { path: Some(path.into()), what } }
+        let line = self.key.as_deref().and_then(|key| line_of(&text, key));
+        let is_placed = self.path.is_some() || self.line.is_some() || line.is_none();
+        if is_placed { self } else { PlanError { path: Some(path.into()), line, ..self } }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::{PlanFault, Study};
 
     fn fault(from: &str, to: &str) -> String {
         assert!(EXAMPLE.contains(from), "{from}");
-        Plan::parse(&EXAMPLE.replacen(from, to, 1)).unwrap_err().what
+        Plan::parse(&EXAMPLE.replacen(from, to, 1)).unwrap_err().what()
     }
 
     #[test]
@@ -185,6 +187,30 @@ mod tests {
         assert!(fault("built_in", "ros = 3\nbuilt_in").contains("scene.ros: there is no ROS 3; give 1 or 2"));
         assert!(fault("built_in", "layers = [\"a\"]\nbuilt_in").contains("go with a `file`"));
         assert!(fault("block = 1000", "block = 1\ntraces = 9_000_000").contains("line "));
+    }
+
+    #[test]
+    fn programs_can_tell_faults_apart() {
+        let line = |key: &str| EXAMPLE.lines().position(|line| line.trim_start().starts_with(key)).unwrap() + 1;
+        let wrong = Plan::parse(&EXAMPLE.replacen("traces = 10_000", "traces = 10_000\nstride = 0", 1)).unwrap_err();
+        assert_eq!((wrong.key.as_deref(), wrong.line), (Some("run.stride"), Some(line("traces") + 1)));
+        assert!(matches!(&wrong.fault, PlanFault::Value(what) if what == "must be at least 1, which uses every point"));
+        assert_eq!(wrong.what(), format!("line {}: run.stride: {}", line("traces") + 1, wrong.fault));
+
+        let form = Plan::parse(&EXAMPLE.replacen("built_in", "anchor = 3\nbuilt_in", 1)).unwrap_err();
+        assert_eq!(form.key.as_deref(), Some("scene.anchor"));
+        assert!(matches!(form.fault, PlanFault::AnchorForm));
+
+        let folder = Path::new("/nowhere");
+        let plan = |scene: &str| Plan::parse(&EXAMPLE.replacen("built_in = \"rooms\"", scene, 1)).unwrap();
+        let missing = Study::open(plan("file = \"a.wkt\""), folder).err().unwrap();
+        assert!(
+            matches!((missing.key.as_deref(), &missing.fault), (Some("scene.file"), PlanFault::Read(_))),
+            "{missing:?}"
+        );
+        let unknown = Study::open(plan("built_in = \"halls\""), folder).err().unwrap();
+        assert!(matches!((unknown.key.as_deref(), &unknown.fault), (Some("scene.built_in"), PlanFault::BuiltIn(_))));
+        assert!(unknown.to_string().starts_with("scene.built_in: no built-in scene is called \"halls\""), "{unknown}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 
 use super::plan::Plan;
+use super::plan_error::{PlanError, PlanFault};
 use crate::number::{self, NumberFault, VANISHES};
 
 /// Among how many keys the one at fault is looked for.
@@ -21,13 +22,13 @@ struct Key {
     leaf: bool,
 }
 
-/// A message with the key and the line at fault and, for an unknown key, the nearest known one.
-pub(super) fn explain(text: &str, error: &toml::de::Error) -> String {
+/// A fault of the file's form with the key and the line at fault and, for an unknown key, the nearest known one.
+pub(super) fn explain(text: &str, error: &toml::de::Error) -> PlanError {
     let message = error.message();
     let keys = keys(text);
     let at = error.span().map(|span| span.start.min(text.len()));
     let Ok(document) = text.parse::<toml::Table>() else {
-        return format!("{}{message}", at.map_or(String::new(), |at| line(text, at)));
+        return PlanError { line: at.map(|at| line(text, at)), ..PlanFault::Value(message.to_owned()).into() };
     };
     let within = |key: &&Key| at.is_some_and(|at| key.span.contains(&at));
     // The parser knows the place of some faults as that of their table only.
@@ -43,22 +44,20 @@ pub(super) fn explain(text: &str, error: &toml::de::Error) -> String {
             .map(|(_, nearest)| format!("; did you mean `{nearest}`?")),
         _ => None,
     };
-    let place = key.map_or(String::new(), |key| format!("{}{}", line(text, key.span.start), key.name));
-    if message.contains("AnchorPlan") {
-        return format!("{place} must be [x, y], a list of such, or {{ sample = N }}");
-    }
-    let place = if place.is_empty() { place } else { place + ": " };
-    format!("{place}{message}{}", nearest.unwrap_or_default())
+    let fault = match message.contains("AnchorPlan") {
+        true => PlanFault::AnchorForm,
+        false => PlanFault::Value(format!("{message}{}", nearest.unwrap_or_default())),
+    };
+    let line = key.map(|key| line(text, key.span.start));
+    PlanError { line, key: key.map(|key| key.name.clone()), ..fault.into() }
 }
 
-/// The same fault with the line of the key with whose name it begins, if `text` has such a key.
-pub(super) fn located(text: &str, fault: String) -> String {
-    let name = fault.split(": ").next().unwrap_or_default();
+/// The line of the key `name`, if `text` has it; of its table, if the file leaves it out.
+pub(super) fn line_of(text: &str, name: &str) -> Option<usize> {
     let tables = std::iter::successors(Some(name), |name| name.rsplit_once('.').map(|(table, _)| table));
     let keys = keys(text);
-    // A key that the file leaves out belongs into its table.
     let key = tables.into_iter().find_map(|name| keys.iter().find(|key| key.name == name));
-    key.map_or(String::new(), |key| line(text, key.span.start)) + &fault
+    key.map(|key| line(text, key.span.start))
 }
 
 /// What is said of the first number of the file that would be rounded to 0.
@@ -142,8 +141,9 @@ fn keys(text: &str) -> Vec<Key> {
     keys
 }
 
-fn line(text: &str, at: usize) -> String {
-    format!("line {}: ", text[..at].matches('\n').count() + 1)
+/// The number of the line in which a byte stands.
+fn line(text: &str, at: usize) -> usize {
+    text[..at].matches('\n').count() + 1
 }
 
 #[cfg(test)]
@@ -154,7 +154,7 @@ mod tests {
     fn fault(wrong: &str) -> String {
         let head = "[scene]\nbuilt_in = \"rooms\"\n\n";
         let text = format!("{head}{wrong}\n");
-        Plan::parse(&text).unwrap_err().what
+        Plan::parse(&text).unwrap_err().what()
     }
 
     #[test]
@@ -181,11 +181,11 @@ mod tests {
         }
         let what =
             Plan::parse("[scene]\nfile = \"a.wkt\"\nanchor = \"here\"\n[walk]\nkind = \"given\"\nfile = \"a.csv\"");
-        assert_eq!(what.unwrap_err().what, "line 3: scene.anchor must be [x, y], a list of such, or { sample = N }");
+        assert_eq!(what.unwrap_err().what(), "line 3: scene.anchor must be [x, y], a list of such, or { sample = N }");
         let walk = walk.replace("steps", "stpes");
         let what = Plan::parse(&format!("[scene]\nbuilt_in = 'rooms'\nanchor = {{ sample = 3 }}\n{walk}step = 1.0"));
-        assert!(what.unwrap_err().what.starts_with("line 6: walk.stpes: unknown field `stpes`"));
+        assert!(what.unwrap_err().what().starts_with("line 6: walk.stpes: unknown field `stpes`"));
         let what = Plan::parse("scene = { file = \"a.wkt\",\n anchor = [0.0,\n 1e-400] }\nwalk = { kind = \"given\" }");
-        assert!(what.unwrap_err().what.starts_with("line 4: walk: missing field `file`"));
+        assert!(what.unwrap_err().what().starts_with("line 4: walk: missing field `file`"));
     }
 }

@@ -14,7 +14,7 @@ use super::random::{Purpose, Random};
 use super::shard::Shard;
 use super::tally::{Setting, Tallies};
 use super::walk::Walks;
-use crate::example::BuiltIn;
+use crate::example::{BuiltIn, NameError};
 use crate::geometry::{Shown, number};
 use crate::read_file::open;
 use crate::scene::{AnchorError, Model, Scene, read_scene_with};
@@ -46,11 +46,11 @@ impl Study {
         let plan = counted(plan.checked()?, folder)?;
         let scene = match (&plan.scene.built_in, &plan.scene.file) {
             (Some(name), _) => {
-                let built_in: BuiltIn = name.parse().map_err(|e| PlanError::new(format!("scene.built_in: {e}")))?;
+                let built_in: BuiltIn = name.parse().map_err(|e: NameError| PlanError::at_key("scene.built_in", e))?;
                 built_in.scene(1)
             }
             (None, Some(file)) => read_scene_with(&folder.join(file), &plan.scene.options())
-                .map_err(|e| PlanError::new(format!("scene.file: {e}")))?,
+                .map_err(|e| PlanError::at_key("scene.file", e))?,
             (None, None) => return Err(PlanError::new("scene: give `file` or `built_in`")),
         };
         let models = models(&plan, &scene)?;
@@ -65,8 +65,7 @@ impl Study {
         let identity = identity(&plan, &models, given.as_deref())?;
         let bounds = models.iter().map(|m| m.bounds()).reduce(|(l, h), (low, high)| (l.min(low), h.max(high)));
         let bounds = bounds.expect("a study has an anchor");
-        let simplified =
-            plan.run.trade().simplified(&models).map_err(|e| PlanError::new(format!("run.simplify: {e}")))?;
+        let simplified = plan.run.trade().simplified(&models).map_err(|e| PlanError::at_key("run.simplify", e))?;
         let setting = Setting::new(&plan.tallies, simplified, bounds, plan.walk.steps());
         let tallies = Tallies::new(&plan.tallies, setting)?;
         let file = plan.scene.file.as_ref().map(|file| folder.join(file));
@@ -146,9 +145,9 @@ impl Study {
             return Ok(self.drawn(number));
         };
         let none = || PlanError::new(format!("there is no trace {number}")).at(path);
-        let mut reader = TraceReader::open(path).map_err(|e| PlanError::new(e.to_string()))?;
+        let mut reader = TraceReader::open(path)?;
         loop {
-            let traces = reader.next_batch(1 << 10, 1 << 22).map_err(|e| PlanError::new(e.to_string()))?;
+            let traces = reader.next_batch(1 << 10, 1 << 22)?;
             if let Some(trace) = traces.ok_or_else(none)?.into_iter().find(|trace| trace.id == number) {
                 return Ok(self.settled(trace));
             }
@@ -216,7 +215,7 @@ impl Study {
         let reader = match &self.given {
             None => None,
             Some(path) => {
-                let mut reader = TraceReader::open(path).map_err(|e| PlanError::new(e.to_string()))?;
+                let mut reader = TraceReader::open(path)?;
                 let there = skip(&mut reader, first)?;
                 if there < first {
                     return Err(self.too_few(there));
@@ -261,7 +260,7 @@ impl Source<'_> {
         let mut settled: Vec<SettledTrace> = Vec::new();
         let count = (numbers.end - numbers.start) as usize;
         while settled.len() < count {
-            let more = reader.next_batch(count - settled.len(), 1 << 22).map_err(|e| PlanError::new(e.to_string()))?;
+            let more = reader.next_batch(count - settled.len(), 1 << 22)?;
             let Some(more) = more else {
                 return Err(self.study.too_few(there + settled.len() as u64));
             };
@@ -279,7 +278,7 @@ fn skip(reader: &mut TraceReader, count: u64) -> Result<u64, PlanError> {
     let mut skipped = 0;
     while skipped < count {
         let most = (count - skipped).min(1 << 16) as usize;
-        match reader.next_batch(most, 1 << 22).map_err(|e| PlanError::new(e.to_string()))? {
+        match reader.next_batch(most, 1 << 22)? {
             Some(more) => skipped += more.len() as u64,
             None => break,
         }
@@ -294,8 +293,8 @@ fn counted(mut plan: Plan, folder: &Path) -> Result<Plan, PlanError> {
         (Some(file), None) => {
             let path = folder.join(file);
             // It is read again for its traces, so it can be no pipe.
-            open(&path, false).map_err(|e| PlanError::new(e.to_string()))?;
-            let mut reader = TraceReader::open(&path).map_err(|e| PlanError::new(e.to_string()))?;
+            open(&path, false)?;
+            let mut reader = TraceReader::open(&path)?;
             match skip(&mut reader, u64::MAX)? {
                 0 => return Err(PlanError::new("there are no traces in it").at(&path)),
                 count => count,
@@ -309,7 +308,7 @@ fn counted(mut plan: Plan, folder: &Path) -> Result<Plan, PlanError> {
 
 /// The scene with each of the plan's anchors.
 fn models(plan: &Plan, scene: &Scene) -> Result<Vec<Arc<Model>>, PlanError> {
-    let wrong = |e: AnchorError| PlanError::new(format!("scene.anchor: {e}"));
+    let wrong = |e: AnchorError| PlanError::at_key("scene.anchor", e);
     let model = |anchor: Option<DVec2>| Model::new(scene.clone(), anchor).map_err(wrong);
     // All share the walls.
     let tied = |first: &Model, at: DVec2| first.tied(at).map(Arc::new).map_err(wrong);
@@ -351,8 +350,8 @@ fn identity(plan: &Plan, models: &[Arc<Model>], given: Option<&Path>) -> Result<
     (0..scene.walls().len()).flat_map(|wall| scene.ends(wall)).for_each(point);
     if let Some(path) = given {
         // It is read twice, here and for its traces.
-        let mut file = open(path, false).map_err(|e| PlanError::new(e.to_string()))?;
-        hasher.update_reader(&mut file).map_err(|e| PlanError::new(e.to_string()).at(path))?;
+        let mut file = open(path, false)?;
+        hasher.update_reader(&mut file).map_err(|e| PlanError::from(e).at(path))?;
     }
     Ok(hasher.finalize().to_hex().to_string())
 }

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::opened::Study;
 use super::shard::Shard;
+use super::state_error::{StateError, StateFault};
 use super::tally::{Block, Counts, Merge};
 use crate::output::{WholeFile, WriteError};
 
@@ -90,33 +91,6 @@ pub struct Part {
     pub check: Check,
 }
 
-/// What is said of a state whose study is another one.
-const FOREIGN: &str = "it belongs to another study: the plan, the scene or the traces are others";
-
-/// Why a state file cannot be used.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {what}", .path.display())]
-pub struct StateError {
-    /// The file.
-    pub path: PathBuf,
-    /// What is wrong with it.
-    pub what: String,
-    /// Whether it could not even be read, so that nothing is known of it.
-    pub is_unread: bool,
-}
-
-impl StateError {
-    /// Whether the state belongs to another study.
-    pub fn is_foreign(&self) -> bool {
-        self.what == FOREIGN
-    }
-
-    /// Whether the file was read and is damaged or another's, so that nothing is lost with it.
-    pub fn is_useless(&self) -> bool {
-        !self.is_unread && !self.is_foreign()
-    }
-}
-
 impl State {
     /// Nothing is done.
     pub fn new(study: &Study, shard: Shard) -> Self {
@@ -187,30 +161,27 @@ impl State {
     ///
     /// A file that is no state, was written by another version, is damaged, or belongs to another study.
     pub fn load(path: &Path, study: &Study) -> Result<Self, StateError> {
-        let fault = |what: &str| StateError { path: path.to_owned(), what: what.to_owned(), is_unread: false };
-        let bytes = fs::read(path).map_err(|e| StateError { is_unread: true, ..fault(&e.to_string()) })?;
+        State::parse(path, study).map_err(|fault| StateError { path: path.to_owned(), fault })
+    }
+
+    fn parse(path: &Path, study: &Study) -> Result<Self, StateFault> {
+        let bytes = fs::read(path)?;
         let Some(rest) = bytes.strip_prefix(first_line().as_slice()) else {
-            let kin = bytes.starts_with(MAGIC.as_bytes());
-            return Err(fault(if kin {
-                "the state of another version of tautline"
-            } else {
-                "not the state of a study"
-            }));
+            let is_kin = bytes.starts_with(MAGIC.as_bytes());
+            return Err(if is_kin { StateFault::OtherVersion } else { StateFault::NoState });
         };
-        let Some((hash, payload)) = rest.split_at_checked(blake3::OUT_LEN) else {
-            return Err(fault("damaged: it ends too early"));
-        };
+        let (hash, payload) = rest.split_at_checked(blake3::OUT_LEN).ok_or(StateFault::Short)?;
         if blake3::hash(payload).as_bytes() != hash {
-            return Err(fault("damaged: its check sum is wrong"));
+            return Err(StateFault::CheckSum);
         }
-        let state: State = postcard::from_bytes(payload).map_err(|e| fault(&format!("damaged: {e}")))?;
+        let state: State = postcard::from_bytes(payload)?;
         if state.identity != study.identity() {
-            return Err(fault(FOREIGN));
+            return Err(StateFault::Foreign);
         }
         let most = study.places(state.shard);
         let is_open = state.stopped == Stopped::Unfinished && state.place(study) < most;
         if state.place(study) > most || (state.open.is_some() && !is_open) {
-            return Err(fault("damaged: it counts more traces than there are"));
+            return Err(StateFault::Excess);
         }
         Ok(state)
     }
@@ -223,11 +194,11 @@ impl State {
 /// Shards that belong to another study, are not all there, are there twice, or are not done; and none at all.
 pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, StateError> {
     shards.sort_by_key(|(_, state)| state.shard);
-    let fault = |path: &Path, what: String| Err(StateError { path: path.to_owned(), what, is_unread: false });
+    let fault = |path: &Path, fault| Err(StateError { path: path.to_owned(), fault });
     let mut whole = State::new(study, Shard::WHOLE);
     let blocks = study.plan().blocks();
     let Some(of) = shards.first().map(|(_, state)| state.shard.of) else {
-        return fault(Path::new(""), "no shards are given".to_owned());
+        return fault(Path::new(""), StateFault::NoShards);
     };
     if let [(_, state)] = shards.as_slice()
         && (of, state.stopped == Stopped::Unfinished, &state.identity) == (1, false, &whole.identity)
@@ -236,28 +207,29 @@ pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, 
         return Ok(State { kept: Kept::default(), ..shards.remove(0).1 });
     }
     for (i, (path, state)) in shards.iter().enumerate() {
-        let Shard { number, of: parts } = state.shard;
+        let shard = state.shard;
         if state.identity != whole.identity {
-            return fault(path, FOREIGN.to_owned());
+            return fault(path, StateFault::Foreign);
         }
-        if parts != of {
-            return fault(path, format!("this is one of {parts} shards, others are one of {of}"));
+        if shard.of != of {
+            return fault(path, StateFault::Parts { parts: shard.of, of });
         }
-        if (number as usize) < i {
-            return fault(path, format!("shard {number}/{of} is there twice"));
+        if (shard.number as usize) < i {
+            return fault(path, StateFault::Twice(shard));
         }
-        if number as usize > i {
-            return fault(path, format!("shard {i}/{of} is missing; this is {number}/{of}"));
+        if shard.number as usize > i {
+            let missing = Shard { number: i as u32, of };
+            return fault(path, StateFault::Missing { missing, found: Some(shard) });
         }
-        if state.done != state.shard.count(blocks) {
-            let (done, all) = (state.done, state.shard.count(blocks));
-            return fault(path, format!("shard {number}/{of} is not done: {done} of {all} blocks; resume it first"));
+        let (done, all) = (state.done, shard.count(blocks));
+        if done != all {
+            return fault(path, StateFault::Undone { shard, done, all });
         }
     }
     if let Some((path, _)) = shards.last()
         && shards.len() < of as usize
     {
-        return fault(path, format!("shard {}/{of} is missing", shards.len()));
+        return fault(path, StateFault::Missing { missing: Shard { number: shards.len() as u32, of }, found: None });
     }
     for (_, state) in shards {
         whole.seconds += state.seconds;
