@@ -255,6 +255,7 @@ impl Session {
         };
         let Some(rows) = rows else { return Ok(()) };
         // The state is not locked meanwhile: this can take its time.
+        self.folder.check_place()?;
         let check = rows.finish(&self.folder, &state.kept.parts, state.traces())?;
         {
             let mut state = locked(&self.state);

@@ -6,11 +6,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use tautline::engine::{Engine, Job};
-use tautline::session::{Computed, Folder, Saved, Session};
+use tautline::session::{Computed, Folder, Saved, Session, answered};
 use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, State, Stopped, Study, run as go};
 
-use super::answer::{conclude, duration, standing};
-use super::base::{BaseArgs, tell};
+use super::answer::{conclude, duration, standing, tell as tell_answer};
+use super::base::{BaseArgs, WaitArgs, tell};
+use super::stop::StopArgs;
 use crate::cli::engine::{EngineArgs, of_studies};
 use crate::cli::failure::Failure;
 use crate::cli::input::{note, warn};
@@ -41,6 +42,13 @@ pub(crate) struct RunArgs {
     /// Do only every N-th block, from the K-th on, counted from 0; `study merge` puts the shards together
     #[arg(long, value_name = "K/N", default_value = "0/1", hide_default_value = true)]
     shard: Shard,
+    /// Begin, or go on with what is there, however often this is called: one that is done is told and left as it is
+    #[arg(long)]
+    resume: bool,
+    #[command(flatten)]
+    stop: StopArgs,
+    #[command(flatten)]
+    wait: WaitArgs,
     /// Check everything, say what it would cost, and stop
     #[arg(long)]
     dry_run: bool,
@@ -61,6 +69,10 @@ pub(crate) struct ResumeArgs {
     #[command(flatten)]
     base: BaseArgs,
     #[command(flatten)]
+    stop: StopArgs,
+    #[command(flatten)]
+    wait: WaitArgs,
+    #[command(flatten)]
     engine: EngineArgs,
     /// Print the summary as one JSON document
     #[arg(long)]
@@ -71,6 +83,9 @@ pub(crate) struct ResumeArgs {
 const WARNED: usize = 8;
 
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
+    let is_repeated = args.resume || args.stop.is_given();
+    let guard = Guard::new(nothing_new(is_repeated, None));
+    args.stop.set()?;
     let (mut plan, base) = match &args.file {
         Some(file) => (Plan::read(file)?, file.parent().map(Path::to_owned).unwrap_or_default()),
         None => (Plan::parse(EXAMPLE)?, PathBuf::new()),
@@ -108,13 +123,15 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         format!("-{}", args.shard.to_string().replace('/', "-of-"))
     };
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-study{part}")));
+    if args.resume
+        && let Some(summary) = answered(&out, &study, args.shard)?
+    {
+        return tell_answer(&summary, None, &out, args.json);
+    }
     // An engine that is refused leaves no folder behind.
     let engines = Engines::open(&args.engine, &study)?;
-    let folder = Arc::new(Folder::make(&out)?);
-    let guard = Guard::new(Last::TakeBack(Box::new({
-        let folder = folder.clone();
-        move || folder.take_back()
-    })));
+    let folder = Arc::new(args.wait.take(|| Folder::make(&out))?);
+    guard.change(nothing_new(is_repeated, Some(folder.clone())));
     let begun = Session::begin(folder.clone(), study.clone(), &base, args.shard);
     tell(&folder);
     let ended = begun.map_err(Failure::from).and_then(|session| proceed(Arc::new(session), &guard, engines, args.json));
@@ -122,6 +139,18 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         folder.take_back();
     }
     ended
+}
+
+/// What is done where a run is stopped before anything new is done. One that can be repeated is to be.
+fn nothing_new(is_repeated: bool, folder: Option<Arc<Folder>>) -> Last {
+    let take_back = move || folder.iter().for_each(|folder| folder.take_back());
+    match is_repeated {
+        true => Last::Save(Box::new(move || {
+            take_back();
+            Failure::checkpoint(anyhow!("stopped before it went on: repeat the command"))
+        })),
+        false => Last::TakeBack(Box::new(take_back)),
+    }
 }
 
 /// What is said of a study that is stopped before anything new is done.
@@ -134,7 +163,8 @@ fn stopped_before(folder: &Path) -> Last {
 
 pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     let guard = Guard::new(stopped_before(&args.folder));
-    let folder = Arc::new(Folder::open(&args.folder)?);
+    args.stop.set()?;
+    let folder = Arc::new(args.wait.take(|| Folder::open(&args.folder))?);
     tell(&folder);
     let session = Session::resume(folder.clone(), args.base.folder());
     tell(&folder);
@@ -180,6 +210,7 @@ fn stopped(session: &Session) -> Failure {
         Ok(saved) => saved,
         Err(error) => return error.into(),
     };
+    session.folder().give_up();
     // Past its end there is nothing new, but that what there is to say may not be written yet.
     let what = match stopped {
         Stopped::Unfinished => format!("{done} of {all} traces are saved: go on"),
