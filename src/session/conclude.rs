@@ -79,7 +79,7 @@ pub fn look(folder: &Path, base: Option<&Path>) -> Result<(Study, State), Sessio
 /// A folder that holds another study or something else.
 pub fn answered(folder: &Path, study: &Study, shard: Shard) -> Result<Option<Summary>, SessionError> {
     let here = Folder::at(folder);
-    let Some(state) = here.held(study, shard)? else { return Ok(None) };
+    let Some(state) = here.held(study, shard, true)? else { return Ok(None) };
     let outputs = &study.plan().outputs;
     let is_there =
         [(true, RUN_REPORT), (outputs.pictures, PAGE)].iter().all(|(is, name)| !is || here.file(name).exists());

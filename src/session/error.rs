@@ -70,6 +70,15 @@ pub enum SessionError {
         /// How it differs.
         difference: Difference,
     },
+    /// The folder holds what some parts of a study say.
+    #[error(
+        "{} holds an answer of some parts of a study, which cannot be gone on with; run its parts, and merge them again",
+        folder.display()
+    )]
+    Partial {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// The folder holds something else.
     #[error("{} is there already; give another --out", file.display())]
     Occupied {

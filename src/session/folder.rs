@@ -183,13 +183,21 @@ impl Folder {
         Ok(State::new(study, part))
     }
 
-    /// How far the folder is with this part of this study; `None` if it holds nothing of it, nor of anything else.
-    pub(super) fn held(&self, study: &Study, part: Shard) -> Result<Option<State>, SessionError> {
+    /// How far the folder is with this part of this study; `None` if it holds nothing of it, nor of anything else. Where
+    /// it `may_raise` the number of traces, the folder may hold the study with fewer.
+    pub(super) fn held(&self, study: &Study, part: Shard, may_raise: bool) -> Result<Option<State>, SessionError> {
         let another = |difference| SessionError::Another { folder: self.path.clone(), difference };
         let remembered = self.remembered().ok();
         let difference = remembered.as_ref().map(|there| difference(&there.plan, study.plan()));
         if self.file(STATE).exists() {
-            return match State::load(&self.file(STATE), study) {
+            let mut state = State::load(&self.file(STATE), study);
+            if let (Err(error), Some(there)) = (&state, remembered.as_ref().filter(|_| may_raise))
+                && error.is_foreign()
+                && is_raised(&there.plan, study.plan())
+            {
+                state = State::load_raised(&self.file(STATE), study, there.plan.run.count());
+            }
+            return match state {
                 Ok(state) if state.shard() == part => {
                     self.is_begun();
                     Ok(Some(state))
@@ -299,6 +307,13 @@ mod written_shard {
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Shard, D::Error> {
         String::deserialize(from)?.parse().map_err(D::Error::custom)
     }
+}
+
+/// Whether all that differs is that there are more traces here.
+fn is_raised(there: &Plan, here: &Plan) -> bool {
+    let mut same = there.clone();
+    same.run.traces = here.run.traces;
+    there.run.count() < here.run.count() && difference(&same, here).is_none()
 }
 
 /// The first key in which two studies differ, with both values, whatever they write out.

@@ -4,6 +4,7 @@ mod estimate;
 mod file;
 mod file_places;
 mod free_space;
+mod merge;
 mod moments;
 mod opened;
 mod order;
@@ -21,13 +22,14 @@ mod walk;
 
 pub use estimate::Estimate;
 pub use file::EXAMPLE;
+pub use merge::merge;
 pub(crate) use moments::Moments;
 pub use opened::Study;
 pub use plan::{AnchorPlan, OutputPlan, Plan, RunPlan, Sampled, ScenePlan, UntilPlan};
 pub use plan_error::PlanError;
 pub use run::{RunError, Spent, run, run_again};
-pub use shard::Shard;
-pub use state::{Check, Kept, Part, State, StateError, Stopped, merge};
+pub use shard::{Shard, read_blocks};
+pub use state::{Check, Kept, Part, State, StateError, Stopped};
 pub use summary::Summary;
 pub use surroundings::anchor_warnings;
 // All answers of tallies, and the plan of their options.

@@ -32,9 +32,12 @@ pub(super) fn tell(summary: &Summary, run: Option<&RunCost>, folder: &Path, as_j
         print(&format!("\nwritten to {}\n", folder.display()))?;
     }
     match (summary.study.until.relative_error, summary.stopped) {
-        (Some(wanted), Stopped::Complete | Stopped::Seconds) => Err(Failure::unmet(anyhow!(
-            "until.relative_error: the mean greatest length is not as certain as {wanted}; more traces would help"
-        ))),
+        // A shard alone is no answer.
+        (Some(wanted), Stopped::Complete | Stopped::Seconds) if summary.shard.is_none() => {
+            Err(Failure::unmet(anyhow!(
+                "until.relative_error: the mean greatest length is not as certain as {wanted}; more traces would help"
+            )))
+        }
         _ => Ok(()),
     }
 }
@@ -56,6 +59,12 @@ pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
     let steps = counted(summary.steps, "step", "steps");
     let events = counted(summary.events, "event", "events");
     line(format_args!("{traces}, {steps}, {events}; {why}"));
+    if let Some(missing) = &summary.missing {
+        line(format_args!(
+            "put together from {} alone; missing are {missing}",
+            counted(summary.blocks, "block", "blocks")
+        ));
+    }
     if let Some(words) = standing(summary) {
         line(format_args!("{words}"));
     }

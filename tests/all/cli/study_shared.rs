@@ -114,6 +114,87 @@ fn a_study_stops_before_its_time_is_over() {
 }
 
 #[test]
+fn any_parts_make_a_whole_and_some_an_answer_that_says_so() {
+    let folder = study();
+    folder.done("study run s.toml --out truth");
+    for (out, part) in
+        [("a", "--blocks 0..5"), ("b", "--blocks 5..24 --shard 2@1-2"), ("c", "--blocks 5..24 --shard 0/2")]
+    {
+        folder.done(&format!("study run s.toml --out {out} {part}"));
+    }
+    folder.refused(2, "study merge a c --out all", &["blocks 6..7, 8..9, 10..11", "are missing, of 24"]);
+    folder.refused(2, "study merge a c a b --out all", &["shard 0/1 of blocks 0..5 is there twice"]);
+    folder.done("study run s.toml --out d --shard 1/24");
+    folder.refused(2, "study merge a c d b --out all", &["d: block 1 is in a too"]);
+    let told = folder.done("study merge a c --partial --out all").stdout;
+    assert!(told.contains("put together from 15 blocks alone; missing are 6..7, 8..9"), "{told}");
+    assert!(answer(&folder, "all").contains("\"missing\": \"6..7, 8..9, "));
+    folder.refused(2, "study resume all", &["all holds an answer of some parts", "merge them again"]);
+    folder.refused(2, "study run s.toml --out all --resume", &["all holds an answer of some parts"]);
+    folder.done("study show all");
+    // What is missing may be added to it, and the whole stands where a part stood.
+    folder.done("study merge all b --out more");
+    folder.done("study merge c b a --out all");
+    assert!(answer(&folder, "all") == answer(&folder, "truth") && answer(&folder, "more") == answer(&folder, "truth"));
+    // A part does not take the place of the whole.
+    folder.done("study merge a c --partial --out all");
+    assert!(answer(&folder, "all") == answer(&folder, "truth"));
+    // A folder in which nothing was saved yet is nothing yet.
+    fs::create_dir(folder.path("new")).unwrap();
+    folder.done("study merge new a --partial --out some");
+    for wrong in ["--blocks 5..5", "--blocks 5", "--shard 6/6", "--shard 7@1-6"] {
+        folder.refused(2, &format!("study run s.toml --out no {wrong}"), &["such as"]);
+    }
+}
+
+#[test]
+fn a_shared_study_ends_with_the_block_with_which_one_run_ends() {
+    let folder = study();
+    folder.write("u.toml", format!("{}[until]\nrelative_error = 0.05\n", STUDY.replace("950", "8_000")));
+    folder.done("study run u.toml --out truth");
+    assert!(answer(&folder, "truth").contains("\"stopped\": \"relative_error\""));
+    for k in 1..=3 {
+        folder.done(&format!("study run u.toml --out k{k} --shard {k}@1-3"));
+    }
+    folder.done("study merge k3 k1 k2 --out all");
+    assert!(answer(&folder, "all") == answer(&folder, "truth"));
+    // The first blocks alone are enough, once they are there without a gap.
+    let blocks: u64 =
+        answer(&folder, "truth").split("\"blocks\": ").nth(1).unwrap().split(',').next().unwrap().parse().unwrap();
+    assert!((5..150).contains(&blocks), "{blocks}");
+    folder.done(&format!("study run u.toml --out first --blocks 0..{}", blocks + 1));
+    folder.done("study merge first --out enough");
+    assert!(answer(&folder, "enough") == answer(&folder, "truth"));
+    folder.done("study run u.toml --out late --blocks 3..200");
+    let told = folder.done("study merge late --partial --out some").stdout;
+    assert!(told.contains("missing are 0..3\n"), "{told}");
+    folder.done("study run u.toml --out early --blocks 0..3");
+    folder.done("study merge some early --out enough2");
+    assert!(answer(&folder, "enough2") == answer(&folder, "truth"));
+}
+
+#[test]
+fn traces_are_raised_and_what_was_done_stays_done() {
+    let folder = study();
+    folder.write("t.toml", STUDY.replace("[outputs]", "[outputs]\ntraces = true"));
+    folder.done("study run t.toml --count 2210 --out truth");
+    for part in ["", "--shard 1/2"] {
+        let out = format!("a{}", part.len());
+        folder.done(&format!("study run t.toml --out {out} {part}"));
+        folder.refused(2, &format!("study run t.toml --count 2210 --out {out} {part}"), &["run.traces is 950 there"]);
+        folder.refused(2, &format!("study run t.toml --count 940 --out {out} --resume {part}"), &["run.traces is 950"]);
+        let told = folder.done(&format!("study run t.toml --count 2210 --out {out} --resume {part}")).stderr;
+        let held = if part.is_empty() { "holds 950 of 2210" } else { "holds 470 of " };
+        assert!(told.contains(held), "{told}");
+    }
+    assert!(answer(&folder, "a0") == answer(&folder, "truth"));
+    assert!(folder.read("a0/traces.parquet") == folder.read("truth/traces.parquet"));
+    folder.done("study run t.toml --count 2210 --shard 0/2 --out b");
+    folder.done("study merge a11 b --out all");
+    assert!(answer(&folder, "all") == answer(&folder, "truth"));
+}
+
+#[test]
 fn of_two_writers_one_waits_or_leaves() {
     let folder = study();
     folder.done("study run long.toml --out truth");
