@@ -70,6 +70,11 @@ impl Failure {
         Failure { code: 5, error }
     }
 
+    /// Another process writes there.
+    pub(crate) fn busy(error: anyhow::Error) -> Self {
+        Failure { code: 6, error }
+    }
+
     pub(crate) fn code(&self) -> ExitCode {
         ExitCode::from(self.code)
     }
@@ -133,6 +138,7 @@ impl From<SessionError> for Failure {
         match error {
             SessionError::Engine(error) => error.into(),
             SessionError::Write(error) => error.into(),
+            error if error.is_busy() => Failure::busy(error.into()),
             error if error.is_input() => Failure::input(error.into()),
             error => Failure::internal(error.into()),
         }

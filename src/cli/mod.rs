@@ -42,7 +42,8 @@ use tautline::words;
     version,
     max_term_width = 110,
     after_help = "Exit codes: 0 done; 1 internal error; 2 bad input or usage; \
-    3 no such or lost GPU; 4 stopped early with a checkpoint; 5 finished with a target not met; 130 stopped by Ctrl-C."
+    3 no such or lost GPU; 4 stopped early with a checkpoint; 5 finished with a target not met; \
+    6 another run writes to the study's folder; 130 stopped by Ctrl-C."
 )]
 struct Cli {
     #[command(subcommand)]

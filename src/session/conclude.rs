@@ -6,9 +6,10 @@ use super::error::SessionError;
 use super::folder::Folder;
 use super::names::{PAGE, RUN_REPORT, SUMMARY};
 use super::report::{RunReport, pretty};
+use super::rows;
 use super::under_way::{Session, locked};
 use crate::picture::{self, PictureError};
-use crate::study::{State, Stopped, Study, Summary};
+use crate::study::{Shard, State, Stopped, Study, Summary};
 
 /// How wide the pictures are as PNG, in pixels: two for each of the SVG's units.
 const WIDTH: u32 = 1600;
@@ -53,7 +54,7 @@ fn draw(folder: &Folder, summary: &Summary, study: &Study, report: &RunReport) -
     }
     let shown: Vec<_> = pictures.into_iter().map(|(_, title, svg)| (title, svg)).collect();
     let report = serde_json::to_value(report)?;
-    Ok(folder.write(PAGE, picture::page(summary, &shown, Some(&report)).as_bytes())?)
+    folder.write(PAGE, picture::page(summary, &shown, Some(&report)).as_bytes())
 }
 
 /// A study in a folder, and how far it is. Its files are named from `base`, or else from where they were as it began.
@@ -68,6 +69,26 @@ pub fn look(folder: &Path, base: Option<&Path>) -> Result<(Study, State), Sessio
     let (study, _) = folder.study(base)?;
     let state = folder.state(&study)?;
     Ok((study, state))
+}
+
+/// The answer of this part of a study, if `folder` holds it whole, with all that the study writes besides. Whoever
+/// writes there is not disturbed.
+///
+/// # Errors
+///
+/// A folder that holds another study or something else.
+pub fn answered(folder: &Path, study: &Study, shard: Shard) -> Result<Option<Summary>, SessionError> {
+    let here = Folder::at(folder);
+    let Some(state) = here.held(study, shard, true)? else { return Ok(None) };
+    let outputs = &study.plan().outputs;
+    let is_there =
+        [(true, RUN_REPORT), (outputs.pictures, PAGE)].iter().all(|(is, name)| !is || here.file(name).exists());
+    if state.stopped() == Stopped::Unfinished || !is_there {
+        return Ok(None);
+    }
+    let summary = state.summary(study);
+    let is_whole = is_answer(folder, &summary)? && (!outputs.traces || rows::of_shard(&here, &state).is_ok());
+    Ok(is_whole.then_some(summary))
 }
 
 /// Whether the folder's `summary.json` is this one, or rightly not there since the study has not ended.

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
+use super::holder::Holder;
 use crate::engine::EngineError;
 use crate::output::WriteError;
 use crate::picture::PictureError;
@@ -13,12 +14,22 @@ use crate::study::{PlanError, RunError, Shard, StateError};
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
     /// Another process writes to the folder.
-    #[error("{} is in use: {} writes to it; wait for its end, or stop it", folder.display(), writer(*.process))]
+    #[error("{} is in use: {} writes to it; wait for its end, or stop it", folder.display(), writer(holder))]
     InUse {
         /// The folder.
         folder: PathBuf,
         /// Which process, if that is known.
-        process: Option<u32>,
+        holder: Option<Box<Holder>>,
+    },
+    /// This process stood still for so long that another one took the folder over.
+    #[error(
+        "{}: another run has taken the folder over, since this one stood still; what was saved by then stands, and the \
+         other goes on with it",
+        folder.display()
+    )]
+    Lost {
+        /// The folder.
+        folder: PathBuf,
     },
     /// Something else stands where the folder is to be.
     #[error("{} is there already and is no folder; give another", path.display())]
@@ -58,6 +69,15 @@ pub enum SessionError {
         folder: PathBuf,
         /// How it differs.
         difference: Difference,
+    },
+    /// The folder holds what some parts of a study say.
+    #[error(
+        "{} holds an answer of some parts of a study, which cannot be gone on with; run its parts, and merge them again",
+        folder.display()
+    )]
+    Partial {
+        /// The folder.
+        folder: PathBuf,
     },
     /// The folder holds something else.
     #[error("{} is there already; give another --out", file.display())]
@@ -143,11 +163,18 @@ pub enum SessionError {
 }
 
 impl SessionError {
-    /// Whether other input helps, and not another machine or a repaired program.
+    /// Whether another process writes to the folder, so that it may help to wait.
+    pub fn is_busy(&self) -> bool {
+        matches!(self, SessionError::InUse { .. } | SessionError::Lost { .. })
+    }
+
+    /// Whether other input helps, and not another machine, a repaired program or patience.
     pub fn is_input(&self) -> bool {
         !matches!(
             self,
-            SessionError::Rows { .. }
+            SessionError::InUse { .. }
+                | SessionError::Lost { .. }
+                | SessionError::Rows { .. }
                 | SessionError::Engine(_)
                 | SessionError::Write(_)
                 | SessionError::Picture { .. }
@@ -289,7 +316,10 @@ impl fmt::Display for Note {
         match self {
             Note::NoLocks { folder, cause } => {
                 let folder = folder.display();
-                write!(f, "{folder}: the file system has no locks ({cause}); see to it that nothing else writes there")
+                write!(
+                    f,
+                    "{folder}: the file system has no locks ({cause}); a lease alone keeps others from writing there"
+                )
             }
             Note::Begins { folder } => write!(f, "{}: no state was saved, so the study begins", folder.display()),
             Note::Holds { folder, done, all } => {
@@ -304,8 +334,8 @@ impl fmt::Display for Note {
     }
 }
 
-fn writer(number: Option<u32>) -> String {
-    number.map_or("another run".to_owned(), |number| format!("process {number}"))
+fn writer(holder: &Option<Box<Holder>>) -> String {
+    holder.as_ref().map_or("another run".to_owned(), |holder| holder.to_string())
 }
 
 fn damage(cause: &Option<serde_json::Error>) -> String {

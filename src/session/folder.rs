@@ -139,7 +139,7 @@ impl Folder {
         let mut remembered = Remembered { plan: plan.clone(), base, shard, check: String::new() };
         remembered.check = remembered.check()?;
         let text = serde_json::to_string_pretty(&remembered)?;
-        Ok(self.write(STUDY, format!("{text}\n").as_bytes())?)
+        self.write(STUDY, format!("{text}\n").as_bytes())
     }
 
     fn no_study(&self, cause: std::io::Error) -> SessionError {
@@ -183,13 +183,21 @@ impl Folder {
         Ok(State::new(study, part))
     }
 
-    /// How far the folder is with this part of this study; `None` if it holds nothing of it, nor of anything else.
-    pub(super) fn held(&self, study: &Study, part: Shard) -> Result<Option<State>, SessionError> {
+    /// How far the folder is with this part of this study; `None` if it holds nothing of it, nor of anything else. Where
+    /// it `may_raise` the number of traces, the folder may hold the study with fewer.
+    pub(super) fn held(&self, study: &Study, part: Shard, may_raise: bool) -> Result<Option<State>, SessionError> {
         let another = |difference| SessionError::Another { folder: self.path.clone(), difference };
         let remembered = self.remembered().ok();
         let difference = remembered.as_ref().map(|there| difference(&there.plan, study.plan()));
         if self.file(STATE).exists() {
-            return match State::load(&self.file(STATE), study) {
+            let mut state = State::load(&self.file(STATE), study);
+            if let (Err(error), Some(there)) = (&state, remembered.as_ref().filter(|_| may_raise))
+                && error.is_foreign()
+                && is_raised(&there.plan, study.plan())
+            {
+                state = State::load_raised(&self.file(STATE), study, there.plan.run.count());
+            }
+            return match state {
                 Ok(state) if state.shard() == part => {
                     self.is_begun();
                     Ok(Some(state))
@@ -210,19 +218,26 @@ impl Folder {
         }
     }
 
-    /// An error if the folder has been moved: another may have taken its place.
-    pub(super) fn check_place(&self) -> Result<(), WriteError> {
-        if self.lock.as_ref().is_some_and(|lock| !lock.is_in_place()) {
+    /// An error if the folder has been moved, since another may have taken its place, and if another process has taken
+    /// it over. It is asked before anything is written.
+    pub(super) fn check_place(&self) -> Result<(), SessionError> {
+        let Some(lock) = &self.lock else { return Ok(()) };
+        if !lock.is_in_place() {
             let cause =
                 std::io::Error::other("the study's folder is not there any more; if it was moved, resume it there");
-            return Err(WriteError::Io { path: self.file(STATE), cause });
+            return Err(WriteError::Io { path: self.file(STATE), cause }.into());
         }
-        Ok(())
+        if lock.is_held() { Ok(()) } else { Err(SessionError::Lost { folder: self.path.clone() }) }
     }
 
-    pub(super) fn save(&self, state: &State) -> Result<(), WriteError> {
+    /// Lets go of the folder before the process ends, where nothing more is written.
+    pub fn give_up(&self) {
+        self.lock.iter().for_each(Lock::give_up);
+    }
+
+    pub(super) fn save(&self, state: &State) -> Result<(), SessionError> {
         self.check_place()?;
-        state.save(&self.file(STATE))
+        Ok(state.save(&self.file(STATE))?)
     }
 
     /// What was said of the run before, if it is as it was written.
@@ -233,11 +248,12 @@ impl Folder {
     }
 
     /// Writes a file of the folder, whole or not at all.
-    pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
+    pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), SessionError> {
+        self.check_place()?;
         let path = self.file(name);
         let mut file = WholeFile::create(&path)?;
         file.write_all(bytes).map_err(|cause| WriteError::Io { path, cause })?;
-        file.finish_durably()
+        Ok(file.finish_durably()?)
     }
 
     /// From now on there is something that must not be lost.
@@ -248,17 +264,19 @@ impl Folder {
     /// Takes back what this process did here, unless there is something that must not be lost. What has taken the
     /// folder's place meanwhile is another's.
     pub fn take_back(&self) {
-        if self.lock.as_ref().is_some_and(|lock| !lock.is_in_place()) {
+        if self.check_place().is_err() {
             return;
         }
         let stage = self.stage.load(Ordering::SeqCst);
+        let is_own = stage == NEW || (stage == UNTOUCHED && self.lock.as_ref().is_some_and(|lock| lock.is_new));
         if stage == NEW {
             // What cannot be removed is taken over by the next run that begins here.
             [STATE, STUDY, TRACES].iter().for_each(|name| drop(fs::remove_file(self.file(name))));
             let _ = fs::remove_dir_all(self.file(PARTS));
             self.tidy();
         }
-        if stage == NEW || (stage == UNTOUCHED && self.lock.as_ref().is_some_and(|lock| lock.is_new)) {
+        self.give_up();
+        if is_own {
             let _ = fs::remove_file(self.file(LOCK));
             self.remove_made();
         }
@@ -289,6 +307,13 @@ mod written_shard {
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Shard, D::Error> {
         String::deserialize(from)?.parse().map_err(D::Error::custom)
     }
+}
+
+/// Whether all that differs is that there are more traces here.
+fn is_raised(there: &Plan, here: &Plan) -> bool {
+    let mut same = there.clone();
+    same.run.traces = here.run.traces;
+    there.run.count() < here.run.count() && difference(&same, here).is_none()
 }
 
 /// The first key in which two studies differ, with both values, whatever they write out.

@@ -7,14 +7,18 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::error::{Note, SessionError};
+use super::holder::Holder;
+use super::lease::{Lease, holder};
 use super::names::LOCK;
 use crate::output::WriteError;
 
-/// Held by the process that writes to a study's folder. The operating system lets go of it when the process ends, in
-/// whatever way.
+/// Held by the process that writes to a study's folder: a lock, of which the operating system lets go when the process
+/// ends, in whatever way, and beside it a lease, since other machines may not see the lock.
 pub(super) struct Lock {
     file: File,
     path: PathBuf,
+    /// Taken last.
+    lease: Option<Lease>,
     /// Whether no process had it before.
     pub(super) is_new: bool,
 }
@@ -27,14 +31,18 @@ impl Lock {
         loop {
             let open = File::options().read(true).write(true).create(true).truncate(false).open(&path);
             let mut file = open.map_err(|cause| WriteError::Io { path: path.clone(), cause })?;
-            match patiently(|| file.try_lock()) {
-                Ok(()) => {}
+            let is_locked = match patiently(|| file.try_lock()) {
+                Ok(()) => true,
                 Err(TryLockError::WouldBlock) => return Err(in_use(folder, &mut file)),
-                Err(TryLockError::Error(cause)) => note(Note::NoLocks { folder: folder.to_owned(), cause }),
-            }
+                Err(TryLockError::Error(cause)) => {
+                    note(Note::NoLocks { folder: folder.to_owned(), cause });
+                    false
+                }
+            };
             // Who had it before may have removed the folder meanwhile.
-            let mut lock = Lock { file, path: path.clone(), is_new };
+            let mut lock = Lock { file, path: path.clone(), lease: None, is_new };
             if lock.is_in_place() {
+                lock.lease = Some(Lease::take(folder, is_locked)?);
                 // Whose it is, is only said: without room for that, the lock is as good.
                 let _ = lock.file.set_len(0).and_then(|()| writeln!(lock.file, "{}", std::process::id()));
                 return Ok(lock);
@@ -50,6 +58,16 @@ impl Lock {
             Err(TryLockError::WouldBlock) => Err(in_use(folder, &mut file)),
             Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
         }
+    }
+
+    /// Whether no other machine has taken the folder over.
+    pub(super) fn is_held(&self) -> bool {
+        self.lease.as_ref().is_none_or(Lease::is_held)
+    }
+
+    /// Lets go of the folder, where nothing more is written.
+    pub(super) fn give_up(&self) {
+        self.lease.iter().for_each(Lease::give_up);
     }
 
     /// Whether the folder is where it was: it may have been moved, and another have taken its place.
@@ -91,5 +109,7 @@ fn in_use(folder: &Path, file: &mut File) -> SessionError {
     let mut text = String::new();
     let read = file.take(20).read_to_string(&mut text);
     let process = read.ok().and_then(|_| text.trim().parse().ok());
-    SessionError::InUse { folder: folder.to_owned(), process }
+    // The lease says more, unless it is not there yet.
+    let holder = holder(folder).or(process.map(|process| Holder { process, ..Holder::here() }));
+    SessionError::InUse { folder: folder.to_owned(), holder: holder.map(Box::new) }
 }

@@ -6,44 +6,51 @@ use std::sync::Arc;
 use super::error::SessionError;
 use super::folder::{Folder, check};
 use super::lock::Lock;
-use super::names::TRACES;
+use super::names::{STATE, TRACES};
 use super::report::{Computed, RunReport, provenance};
 use super::rows;
 use super::under_way::Session;
 use crate::output::{WriteError, merge_results};
-use crate::study::{Shard, State, Study, merge as merge_states};
+use crate::study::{Shard, State, StateError, Stopped, Study, merge as merge_states};
 
-/// Puts the shards in these folders together, all of a study's, in the folder `out`. `made` is told of that once the
-/// shards are known to be sound and it is there. No shard is written to meanwhile. Returns the study there, to be
-/// [concluded](Session::conclude) with the report.
+/// Puts the parts in these folders together, which make up a study, in the folder `out`; or, if `is_partial`, those that
+/// are there, also while others write to them. `made` is told of that once the parts are known to be sound and it is
+/// there. Returns the study there, to be [concluded](Session::conclude) with the report. Holds one part at a time.
 ///
 /// # Errors
 ///
-/// Shards that do not make a whole, or are damaged; a folder that holds something else, and what the operating system
-/// says.
+/// Parts that do not make a whole, have blocks in common, or are damaged; a folder that holds something else, and what
+/// the operating system says.
 ///
 /// # Panics
 ///
-/// If no shard is given.
+/// If no part is given.
 pub fn merge(
-    shards: &[PathBuf],
+    parts: &[PathBuf],
+    is_partial: bool,
     base: Option<&Path>,
     out: &Path,
     made: impl FnOnce(&Arc<Folder>),
 ) -> Result<(Session, RunReport), SessionError> {
-    if let Some(folder) = shards.iter().find(|shard| is_same(shard, out)) {
+    if let Some(folder) = parts.iter().find(|part| is_same(part, out)) {
         return Err(SessionError::IsShard { folder: folder.clone() });
     }
-    let _shared = shards.iter().map(|shard| Lock::share(shard)).collect::<Result<Vec<_>, _>>()?;
-    let (study, base) = Folder::at(&shards[0]).study(base)?;
-    let states: Vec<_> = shards
-        .iter()
-        .map(|path| Ok((path.clone(), Folder::at(path).state(&study)?)))
-        .collect::<Result<_, SessionError>>()?;
-    let state = merge_states(&study, states.clone()).map_err(|error| SessionError::State { error, folder: None })?;
-    let with_rows = study.plan().outputs.traces;
-    let rows = |(path, state): &(PathBuf, State)| rows::of_shard(&Folder::at(path), state);
-    let rows: Vec<PathBuf> = states.iter().filter(|_| with_rows).map(rows).collect::<Result<_, _>>()?;
+    let begun: Vec<PathBuf> =
+        parts.iter().filter(|part| !is_partial || Folder::at(part).file(STATE).exists()).cloned().collect();
+    let (study, base) = Folder::at(begun.first().unwrap_or(&parts[0])).study(base)?;
+    let load = |path: &Path| {
+        // Nobody writes there meanwhile. There may be more parts than files can be open.
+        let _shared = if is_partial { None } else { Lock::share(path)? };
+        Folder::at(path).state(&study)
+    };
+    let state = merge_states(&study, &begun, is_partial, load)?;
+    let mut rows = Vec::new();
+    if study.plan().outputs.traces && !state.is_partial() {
+        for path in &begun {
+            let folder = Folder::at(path);
+            rows.push(rows::of_shard(&folder, &folder.state(&study)?)?);
+        }
+    }
     let folder = Arc::new(Folder::make(out)?);
     made(&folder);
     let merged = put_together(&folder, &study, &base, state, &rows);
@@ -51,11 +58,11 @@ pub fn merge(
         folder.take_back();
     }
     let state = merged?;
-    let report = RunReport::merged(shards, study.plan().run.precision, state.seconds());
+    let report = RunReport::merged(&begun, study.plan().run.precision, state.seconds());
     Ok((Session::new(folder, Arc::new(study), state), report))
 }
 
-/// Has the folder hold the whole study.
+/// Has the folder hold what was merged.
 fn put_together(
     folder: &Folder,
     study: &Study,
@@ -63,10 +70,21 @@ fn put_together(
     mut state: State,
     rows: &[PathBuf],
 ) -> Result<State, SessionError> {
-    folder.held(study, Shard::WHOLE)?;
+    if let Some(held) = folder.held(study, Shard::WHOLE, false)?
+        && state.is_partial()
+    {
+        match held.stopped() {
+            // It says more.
+            Stopped::Complete | Stopped::RelativeError | Stopped::Seconds => return Ok(held),
+            Stopped::Unfinished if !held.is_partial() => {
+                return Err(SessionError::Occupied { file: folder.file(STATE) });
+            }
+            Stopped::Unfinished => {}
+        }
+    }
     // The state comes last: without it, this can be done again.
     folder.remember(study.plan(), base, Shard::WHOLE)?;
-    if study.plan().outputs.traces {
+    if study.plan().outputs.traces && !state.is_partial() {
         let precision = study.plan().run.precision.name();
         let computed = Computed { engine: "merged", precision, on: "several runs".to_owned() };
         let (file, notes) = (folder.file(TRACES), provenance(study, &computed));
@@ -81,4 +99,11 @@ fn put_together(
 /// Whether both are one folder.
 fn is_same(a: &Path, b: &Path) -> bool {
     a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+}
+
+impl From<StateError> for SessionError {
+    /// Of a part that cannot be merged.
+    fn from(error: StateError) -> Self {
+        SessionError::State { error, folder: None }
+    }
 }

@@ -30,6 +30,8 @@
 mod conclude;
 mod error;
 mod folder;
+mod holder;
+mod lease;
 mod lock;
 mod merge;
 mod names;
@@ -37,9 +39,10 @@ mod report;
 mod rows;
 mod under_way;
 
-pub use conclude::{is_answer, look};
+pub use conclude::{answered, is_answer, look};
 pub use error::{Action, Difference, Note, RowsFault, SessionError};
 pub use folder::Folder;
+pub use holder::Holder;
 pub use merge::merge;
 pub use report::{Computed, MergeCost, RunCost, RunReport, SpentSeconds, Tried};
 pub use under_way::{Left, Saved, Session};

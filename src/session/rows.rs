@@ -110,6 +110,19 @@ impl Rows {
     }
 }
 
+/// Has the rows of a study that was done and has more traces now be the first of its parts.
+pub(super) fn reopen(folder: &Folder, study: &Study, state: &mut State) -> Result<(), SessionError> {
+    if state.stopped() != Stopped::Unfinished || !study.plan().outputs.traces {
+        return Ok(());
+    }
+    let Some(check) = state.kept.files.remove(TRACES) else { return Ok(()) };
+    let (from, parts) = (folder.file(TRACES), folder.file(PARTS));
+    let moved = fs::create_dir_all(&parts).and_then(|()| fs::rename(&from, path(&parts, 0)));
+    moved.map_err(|cause| SessionError::Rows { action: Action::Write, path: parts, cause })?;
+    state.kept.parts = vec![Part { places: 0..state.place(study), check }];
+    Ok(())
+}
+
 /// Removes the parts, which are not needed any more.
 pub(super) fn clear(folder: &Folder) -> Result<(), SessionError> {
     let parts = folder.file(PARTS);

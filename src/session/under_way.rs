@@ -59,6 +59,10 @@ pub struct Saved {
     pub stopped: Stopped,
 }
 
+fn refuse_partial(folder: &Folder, state: &State) -> Result<(), SessionError> {
+    if state.is_partial() { Err(SessionError::Partial { folder: folder.path().to_owned() }) } else { Ok(()) }
+}
+
 pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -73,8 +77,33 @@ impl Session {
     ///
     /// A folder that holds something else, and what the operating system says.
     pub fn begin(folder: Arc<Folder>, study: Arc<Study>, base: &Path, shard: Shard) -> Result<Self, SessionError> {
-        let held = folder.held(&study, shard)?;
-        if let Some(state) = &held {
+        Session::begin_with(folder, study, base, shard, false)
+    }
+
+    /// The same, where the folder may also hold the study with fewer traces: what is done of that stays done.
+    ///
+    /// # Errors
+    ///
+    /// As those of [`begin`](Self::begin).
+    pub fn begin_or_raise(
+        folder: Arc<Folder>,
+        study: Arc<Study>,
+        base: &Path,
+        shard: Shard,
+    ) -> Result<Self, SessionError> {
+        Session::begin_with(folder, study, base, shard, true)
+    }
+
+    fn begin_with(
+        folder: Arc<Folder>,
+        study: Arc<Study>,
+        base: &Path,
+        shard: Shard,
+        may_raise: bool,
+    ) -> Result<Self, SessionError> {
+        let mut held = folder.held(&study, shard, may_raise)?;
+        if let Some(state) = &mut held {
+            refuse_partial(&folder, state)?;
             let path = folder.path().to_owned();
             folder.note(match state.stopped() {
                 Stopped::Unfinished => {
@@ -82,6 +111,11 @@ impl Session {
                 }
                 _ => Note::Answered { folder: path },
             });
+            if may_raise {
+                rows::reopen(&folder, &study, state)?;
+                // Before the study is remembered: a state of one with fewer traces is told from others by that.
+                folder.save(state)?;
+            }
         }
         // What is written besides the answer may be asked for in another way than before.
         folder.remember(study.plan(), base, shard)?;
@@ -97,6 +131,7 @@ impl Session {
     pub fn resume(folder: Arc<Folder>, base: Option<&Path>) -> Result<Self, SessionError> {
         let (study, _) = folder.study(base)?;
         let state = folder.state_or_new(&study)?;
+        refuse_partial(&folder, &state)?;
         Ok(Session::new(folder, Arc::new(study), state))
     }
 
@@ -255,6 +290,7 @@ impl Session {
         };
         let Some(rows) = rows else { return Ok(()) };
         // The state is not locked meanwhile: this can take its time.
+        self.folder.check_place()?;
         let check = rows.finish(&self.folder, &state.kept.parts, state.traces())?;
         {
             let mut state = locked(&self.state);

@@ -94,6 +94,13 @@ impl Study {
         &self.identity
     }
 
+    /// The identity of the same study with so many traces.
+    pub(super) fn identity_with(&self, traces: u64) -> Result<String, PlanError> {
+        let mut plan = self.plan.clone();
+        plan.run.traces = Some(traces);
+        identity(&plan, &self.given_models, self.given.as_deref())
+    }
+
     /// The numbers of the traces of a block.
     pub fn block(&self, block: u64) -> Range<u64> {
         let size = u64::from(self.plan.run.block);

@@ -61,6 +61,8 @@ struct Group {
 enum Tallied {
     /// The block is whole.
     Whole(Box<Counts>),
+    /// It is whole and the study's last, with fewer traces than others.
+    Short(Box<Block>, Box<Counts>),
     /// There is more to come of it.
     Open(Box<Block>),
 }
@@ -107,7 +109,10 @@ fn in_groups<E: Send>(
         if state.stopped != Stopped::Unfinished {
             return Ok(spent);
         }
-        (state.shard, state.place(study), state.open.clone(), state.counts.scalars.max_length())
+        // In the order of the blocks, as sums of floats depend on it.
+        let mut longest = Moments::default();
+        state.blocks.values().for_each(|block| longest.merge(block));
+        (state.shard, state.place(study), state.open.clone(), longest)
     };
     let all = shard.count(study.plan().blocks());
     let places = first..study.places(shard);
@@ -124,13 +129,33 @@ fn in_groups<E: Send>(
                     state.open = Some(*block);
                 }
                 Tallied::Whole(counts) => {
-                    longest.merge(&counts.scalars.max_length());
-                    state.counts.merge_with(*counts);
+                    let block = counts.scalars.max_length();
                     (state.done, state.open) = (index + 1, None);
-                    state.stopped = stopped(study, &longest, state.done == all);
-                    if state.stopped != Stopped::Unfinished {
-                        break;
+                    if state.may_count_too_many(study) {
+                        state.apart.insert(shard.block(index), *counts);
+                    } else {
+                        state.counts.merge_with(*counts);
                     }
+                    longest.merge(&block);
+                    state.blocks.insert(shard.block(index), block);
+                }
+                Tallied::Short(open, counts) => {
+                    let block = counts.scalars.max_length();
+                    (state.done, state.open) = (index + 1, Some(*open));
+                    longest.merge(&block);
+                    state.blocks.insert(shard.block(index), block);
+                }
+            }
+            if state.done > index {
+                // Of a part alone nobody knows whether the study is certain enough.
+                let is_certain = shard == Shard::WHOLE && is_certain(study, &longest);
+                state.stopped = match state.done == all {
+                    _ if is_certain => Stopped::RelativeError,
+                    true => Stopped::Complete,
+                    false => Stopped::Unfinished,
+                };
+                if state.stopped != Stopped::Unfinished {
+                    break;
                 }
             }
         }
@@ -243,6 +268,10 @@ fn tally(
     let count = |(index, is_whole, mut block, part): (u64, bool, Block, Vec<Traced<'_>>)| {
         block.add(&study.tallies, &part);
         let tallied = match is_whole {
+            true if block.traces() < study.plan().run.block.into() => {
+                let counts = block.clone().finish(&study.tallies, shard.block(index));
+                Tallied::Short(Box::new(block), Box::new(counts))
+            }
             true => Tallied::Whole(Box::new(block.finish(&study.tallies, shard.block(index)))),
             false => Tallied::Open(Box::new(block)),
         };
@@ -333,18 +362,13 @@ fn evaluate(
 /// Before that many traces no study is certain enough: of fewer, errors are not known well.
 const LEAST: u64 = 100;
 
-/// Whether the study ends after a block, given the moments of the greatest length so far.
-fn stopped(study: &Study, longest: &Moments, is_last: bool) -> Stopped {
-    let plan = study.plan();
-    if let Some(most) = plan.until.relative_error
-        && longest.count >= LEAST.max(study.models().len() as u64)
-    {
+/// Whether a study of which blocks have these moments of the greatest length is as certain as was asked for.
+pub(super) fn is_certain(study: &Study, longest: &Moments) -> bool {
+    study.plan().until.relative_error.is_some_and(|most| {
         let mean = study.tallies.setting.confidence.mean(longest);
-        if mean.high.is_some_and(|high| high - mean.value <= most * mean.value.abs()) {
-            return Stopped::RelativeError;
-        }
-    }
-    if is_last { Stopped::Complete } else { Stopped::Unfinished }
+        longest.count >= LEAST.max(study.models().len() as u64)
+            && mean.high.is_some_and(|high| high - mean.value <= most * mean.value.abs())
+    })
 }
 
 #[cfg(test)]

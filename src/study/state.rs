@@ -1,14 +1,17 @@
 //! How far a study is, in memory and as a file.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::sync::LazyLock;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::moments::Moments;
 use super::opened::Study;
 use super::shard::Shard;
 use super::state_error::{StateError, StateFault};
@@ -20,10 +23,10 @@ const MAGIC: &str = "tautline study state ";
 
 /// The first line of a state file. It tells what the fields of a state are and of which types, so that none is read
 /// that has others: not their numbers, which [`ANSWERS`](super::opened::ANSWERS) stands for.
-fn first_line() -> Vec<u8> {
+static FIRST_LINE: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let hash = blake3::hash(layout::<State>().to_string().as_bytes()).to_hex();
     format!("{MAGIC}{}\n", &hash[..8]).into_bytes()
-}
+});
 
 /// The names of all fields, in their order, and their types.
 fn layout<T: JsonSchema>() -> serde_json::Value {
@@ -60,12 +63,20 @@ pub struct State {
     pub(super) shard: Shard,
     /// How many of the shard's blocks are done: the first ones.
     pub(super) done: u64,
-    /// What was counted of the block after those, of which only some traces are evaluated.
+    /// What was counted of the block after those, of which only some traces are evaluated; of one that has ended, of the
+    /// last of those if that is smaller than others: the study may be given more traces.
     pub(super) open: Option<Block>,
     pub(super) stopped: Stopped,
     /// How long that took, in seconds.
     pub(super) seconds: f64,
+    /// The blocks that are done, each with the moments of its greatest lengths, by which a study may end.
+    pub(super) blocks: BTreeMap<u64, Moments>,
+    /// What was counted of all those together that are neither open nor apart.
     pub(super) counts: Counts,
+    /// What was counted of each of those that may turn out to lie behind the study's end.
+    pub(super) apart: BTreeMap<u64, Counts>,
+    /// Whether it was put together from some parts of the study, so that it cannot be gone on with.
+    pub(super) is_partial: bool,
     /// What is kept beside the state, so that it is known again.
     pub kept: Kept,
 }
@@ -104,8 +115,41 @@ impl State {
             kept: Kept::default(),
             stopped: if nothing_to_do { Stopped::Complete } else { Stopped::Unfinished },
             seconds: 0.0,
+            blocks: BTreeMap::new(),
             counts: Counts::default(),
+            apart: BTreeMap::new(),
+            is_partial: false,
         }
+    }
+
+    /// Whether the study may end before blocks that this part of it counts.
+    pub(super) fn may_count_too_many(&self, study: &Study) -> bool {
+        study.plan().until.relative_error.is_some() && self.shard != Shard::WHOLE
+    }
+
+    /// The last block of the study, if that is smaller than others and done here.
+    pub(super) fn short(&self) -> Option<&Block> {
+        self.open.as_ref().filter(|_| self.stopped != Stopped::Unfinished || self.is_partial)
+    }
+
+    /// What was counted of all blocks that are done.
+    pub(super) fn counted(&self, study: &Study) -> Cow<'_, Counts> {
+        let mut counts = Cow::Borrowed(&self.counts);
+        self.apart.values().for_each(|block| counts.to_mut().merge_with(block.clone()));
+        if let (Some(block), Some((&number, _))) = (self.short(), self.blocks.last_key_value()) {
+            counts.to_mut().merge_with(block.clone().finish(&study.tallies, number));
+        }
+        counts
+    }
+
+    /// Whether it was put together from some parts of the study only, so that nothing can go on with it.
+    pub fn is_partial(&self) -> bool {
+        self.is_partial
+    }
+
+    /// The study's blocks that are done here.
+    pub fn blocks(&self) -> impl Iterator<Item = u64> + use<'_> {
+        self.blocks.keys().copied()
     }
 
     /// Which part of the study it is.
@@ -121,12 +165,13 @@ impl State {
     /// How many of the shard's traces are evaluated: the first ones, those of a block that is not done included.
     pub fn place(&self, study: &Study) -> u64 {
         let whole = self.done.saturating_mul(study.plan().run.block.into()).min(study.places(self.shard));
-        whole.saturating_add(self.open.as_ref().map_or(0, Block::traces))
+        let open = self.open.as_ref().filter(|_| self.short().is_none()).map_or(0, Block::traces);
+        whole.saturating_add(open)
     }
 
     /// How many traces the blocks have that are done.
     pub fn traces(&self) -> u64 {
-        self.counts.totals.traces.sum
+        self.blocks.values().map(|longest| longest.count).sum()
     }
 
     /// Whether there is nothing left to do, and why.
@@ -149,7 +194,7 @@ impl State {
         let mut file = WholeFile::create(path)?;
         let mut write =
             |bytes: &[u8]| file.write_all(bytes).map_err(|cause| WriteError::Io { path: path.into(), cause });
-        write(&first_line())?;
+        write(&FIRST_LINE)?;
         write(blake3::hash(&bytes).as_bytes())?;
         write(&bytes)?;
         file.finish_durably()
@@ -161,12 +206,64 @@ impl State {
     ///
     /// A file that is no state, was written by another version, is damaged, or belongs to another study.
     pub fn load(path: &Path, study: &Study) -> Result<Self, StateError> {
-        State::parse(path, study).map_err(|fault| StateError { path: path.to_owned(), fault })
+        State::read(path)
+            .and_then(|state| match () {
+                () if state.identity != study.identity() => Err(StateFault::Foreign),
+                () if !state.is_sound(study) => Err(StateFault::Excess),
+                () => Ok(state),
+            })
+            .map_err(|fault| StateError { path: path.to_owned(), fault })
     }
 
-    fn parse(path: &Path, study: &Study) -> Result<Self, StateFault> {
+    /// Whether it counts traces that there are.
+    fn is_sound(&self, study: &Study) -> bool {
+        let size = |block: u64| study.block(block).count() as u64;
+        let (blocks, all) = (study.plan().blocks(), self.shard.count(study.plan().blocks()));
+        let own = (0..self.done.min(all)).map(|index| self.shard.block(index));
+        let is_open = self.stopped == Stopped::Unfinished && self.place(study) < study.places(self.shard);
+        let is_short = |open: &Block| {
+            let last = self.blocks.last_key_value().filter(|(block, _)| **block + 1 == blocks);
+            self.short().is_some() && last.is_some_and(|(&block, _)| size(block) == open.traces())
+        };
+        self.done <= all
+            && self.blocks.iter().all(|(&block, longest)| block < blocks && longest.count == size(block))
+            && (self.is_partial || self.blocks().eq(own))
+            && self.open.as_ref().is_none_or(|open| is_open || is_short(open))
+    }
+
+    /// Reads the state of the same study with fewer traces, `traces` of them, and has it go on: what is done stays done.
+    ///
+    /// # Errors
+    ///
+    /// As [`load`](Self::load).
+    pub fn load_raised(path: &Path, study: &Study, traces: u64) -> Result<Self, StateError> {
+        State::raised(path, study, traces).map_err(|fault| StateError { path: path.to_owned(), fault })
+    }
+
+    fn raised(path: &Path, study: &Study, traces: u64) -> Result<Self, StateFault> {
+        let mut state = State::read(path)?;
+        if !study.identity_with(traces).is_ok_and(|before| before == state.identity) {
+            return Err(StateFault::Foreign);
+        }
+        state.identity = study.identity().to_owned();
+        if state.short().is_some() && !state.is_partial {
+            // It is no whole block any more.
+            state.done = state.done.saturating_sub(1);
+            state.blocks.pop_last();
+            state.stopped = Stopped::Unfinished;
+        } else if state.stopped == Stopped::Complete && state.done < state.shard.count(study.plan().blocks()) {
+            state.stopped = Stopped::Unfinished;
+        }
+        if state.is_partial || !state.is_sound(study) {
+            return Err(StateFault::Merged);
+        }
+        Ok(state)
+    }
+
+    /// Reads a state of whatever study and checks that it is whole.
+    fn read(path: &Path) -> Result<Self, StateFault> {
         let bytes = fs::read(path)?;
-        let Some(rest) = bytes.strip_prefix(first_line().as_slice()) else {
+        let Some(rest) = bytes.strip_prefix(FIRST_LINE.as_slice()) else {
             let is_kin = bytes.starts_with(MAGIC.as_bytes());
             return Err(if is_kin { StateFault::OtherVersion } else { StateFault::NoState });
         };
@@ -174,70 +271,8 @@ impl State {
         if blake3::hash(payload).as_bytes() != hash {
             return Err(StateFault::CheckSum);
         }
-        let state: State = postcard::from_bytes(payload)?;
-        if state.identity != study.identity() {
-            return Err(StateFault::Foreign);
-        }
-        let most = study.places(state.shard);
-        let is_open = state.stopped == Stopped::Unfinished && state.place(study) < most;
-        if state.place(study) > most || (state.open.is_some() && !is_open) {
-            return Err(StateFault::Excess);
-        }
-        Ok(state)
+        Ok(postcard::from_bytes(payload)?)
     }
-}
-
-/// Puts the shards of one study together.
-///
-/// # Errors
-///
-/// Shards that belong to another study, are not all there, are there twice, or are not done; and none at all.
-pub fn merge(study: &Study, mut shards: Vec<(PathBuf, State)>) -> Result<State, StateError> {
-    shards.sort_by_key(|(_, state)| state.shard);
-    let fault = |path: &Path, fault| Err(StateError { path: path.to_owned(), fault });
-    let mut whole = State::new(study, Shard::WHOLE);
-    let blocks = study.plan().blocks();
-    let Some(of) = shards.first().map(|(_, state)| state.shard.of) else {
-        return fault(Path::new(""), StateFault::NoShards);
-    };
-    if let [(_, state)] = shards.as_slice()
-        && (of, state.stopped == Stopped::Unfinished, &state.identity) == (1, false, &whole.identity)
-    {
-        // A study that was not shared out, which may have stopped before its last block.
-        return Ok(State { kept: Kept::default(), ..shards.remove(0).1 });
-    }
-    for (i, (path, state)) in shards.iter().enumerate() {
-        let shard = state.shard;
-        if state.identity != whole.identity {
-            return fault(path, StateFault::Foreign);
-        }
-        if shard.of != of {
-            return fault(path, StateFault::Parts { parts: shard.of, of });
-        }
-        if (shard.number as usize) < i {
-            return fault(path, StateFault::Twice(shard));
-        }
-        if shard.number as usize > i {
-            let missing = Shard { number: i as u32, of };
-            return fault(path, StateFault::Missing { missing, found: Some(shard) });
-        }
-        let (done, all) = (state.done, shard.count(blocks));
-        if done != all {
-            return fault(path, StateFault::Undone { shard, done, all });
-        }
-    }
-    if let Some((path, _)) = shards.last()
-        && shards.len() < of as usize
-    {
-        return fault(path, StateFault::Missing { missing: Shard { number: shards.len() as u32, of }, found: None });
-    }
-    for (_, state) in shards {
-        whole.seconds += state.seconds;
-        whole.counts.merge_with(state.counts);
-    }
-    whole.done = blocks;
-    whole.stopped = Stopped::Complete;
-    Ok(whole)
 }
 
 #[cfg(test)]
@@ -289,27 +324,5 @@ mod tests {
         let old = layout::<Old>();
         assert_eq!(old, layout::<Reworded>());
         assert!(old != layout::<Turned>() && old != layout::<Retyped>());
-    }
-
-    #[test]
-    fn a_shard_that_cannot_be_is_not_read() {
-        let read = |bytes: [u8; 2]| postcard::from_bytes::<Shard>(&bytes);
-        let shard = Shard { number: 1, of: 3 };
-        assert_eq!((read([1, 3]).unwrap(), postcard::to_stdvec(&shard).unwrap()), (shard, vec![1, 3]));
-        for nowhere in [[0, 0], [3, 3]] {
-            assert!(read(nowhere).is_err());
-        }
-    }
-
-    #[test]
-    fn shards_share_out_all_blocks() {
-        for of in 1..6 {
-            for blocks in 0..20 {
-                let shards = (0..of).map(|number| Shard { number, of });
-                let mut all: Vec<u64> = shards.flat_map(|s| (0..s.count(blocks)).map(move |i| s.block(i))).collect();
-                all.sort_unstable();
-                assert_eq!(all, (0..blocks).collect::<Vec<_>>());
-            }
-        }
     }
 }

@@ -43,27 +43,38 @@ pub enum StateFault {
     /// Its study is another one.
     #[error("it belongs to another study: the plan, the scene or the traces are others")]
     Foreign,
+    /// Parts with fewer traces were put together in it, so that it cannot go on.
+    #[error("put together from parts with fewer traces: merge them again")]
+    Merged,
     /// There is nothing to merge.
     #[error("no shards are given")]
     NoShards,
-    /// The study was shared out in another way than for the other shards.
-    #[error("this is one of {parts} shards, others are one of {of}")]
-    Parts {
-        /// In how many shards.
-        parts: u32,
-        /// In how many for the others.
-        of: u32,
-    },
     /// The shard was given before.
     #[error("shard {0} is there twice")]
     Twice(Shard),
-    /// A shard is missing before this one, or, with `found` none, behind it.
-    #[error("shard {missing} is missing{}", .found.map_or(String::new(), |number| format!("; this is {number}")))]
-    Missing {
-        /// The shard that is missing.
-        missing: Shard,
-        /// The shard that is there.
-        found: Option<Shard>,
+    /// Another part has a block that this one has.
+    #[error("block {block} is in {} too", .other.display())]
+    Shared {
+        /// The block's number.
+        block: u64,
+        /// The other part.
+        other: PathBuf,
+    },
+    /// A shard was not given.
+    #[error("shard {number}/{of} is missing")]
+    MissingShard {
+        /// The number of the shard that is missing.
+        number: u32,
+        /// How many shards there are.
+        of: u32,
+    },
+    /// Blocks are in no part.
+    #[error("blocks {blocks} are missing, of {all}")]
+    MissingBlocks {
+        /// Their numbers, as ranges.
+        blocks: String,
+        /// How many blocks there are.
+        all: u64,
     },
     /// The shard is not done.
     #[error("shard {shard} is not done: {done} of {all} blocks; resume it first")]
@@ -85,6 +96,6 @@ impl StateError {
 
     /// Whether the file was read and is damaged or another's, so that nothing is lost with it.
     pub fn is_useless(&self) -> bool {
-        !matches!(self.fault, StateFault::Unread(_) | StateFault::Foreign)
+        !matches!(self.fault, StateFault::Unread(_) | StateFault::Foreign | StateFault::Merged)
     }
 }

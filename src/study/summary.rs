@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::opened::Study;
 use super::plan::Plan;
-use super::shard::Shard;
+use super::shard::{Shard, as_ranges};
 use super::state::{State, Stopped};
 use super::tally::{self, Tally, table};
 use crate::trade::Traded;
@@ -39,16 +39,20 @@ macro_rules! summary {
             /// What it came to that accuracy was given for speed, if it was; `study.run` says how.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             pub traded: Option<Traded>,
-            /// Which shard this is, `K/N` with K from 0; `None` for the whole study.
+            /// Which shard this is, `K/N` with K from 0, or `K/N of blocks A..B`; `None` for the whole study.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             pub shard: Option<String>,
+            /// Which blocks are not in it, as `A..B` for those from A up to the one before B, where it was put together
+            /// from some parts of the study only; `None` otherwise.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            pub missing: Option<String>,
             $($(#[$doc])* pub $name: $Answer,)*
         }
 
         impl State {
             /// What the blocks done so far say. O(what was counted).
             pub fn summary(&self, study: &Study) -> Summary {
-                let (plan, tallies, counts) = (study.plan(), &study.tallies, &self.counts);
+                let (plan, tallies, counts) = (study.plan(), &study.tallies, &*self.counted(study));
                 let (totals, setting) = (&counts.totals, &tallies.setting);
                 Summary {
                     study: plan.clone(),
@@ -64,6 +68,9 @@ macro_rules! summary {
                         totals.traded(study.vertices(), setting.models[0].vertices().len())
                     }),
                     shard: (self.shard != Shard::WHOLE).then(|| self.shard.to_string()),
+                    missing: self.is_partial.then(|| {
+                        as_ranges((0..plan.blocks()).filter(|block| !self.blocks.contains_key(block)))
+                    }),
                     $($name: tallies.$name.answer(&counts.$name, totals, setting),)*
                 }
             }

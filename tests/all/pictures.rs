@@ -139,6 +139,7 @@ fn answer(scene: &Scene) -> Summary {
     let ropes = if near.is_empty() { Vec::new() } else { ropes.collect() };
     Summary {
         shard: None,
+        missing: None,
         traded: None,
         study: plan(
             r#"{"scene": {"file": "scenes/<sea & \"isles\">.geojson"}, "tallies": {"limits": [0.3, 0.6]},

@@ -1,6 +1,7 @@
 //! A study's answer as it is printed: the table of all kin of `tautline study run`, or JSON.
 
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::anyhow;
@@ -19,16 +20,24 @@ pub(super) fn print_answer(summary: &Summary) -> Result<(), Failure> {
 /// Writes and prints the answer. Exit code 5 if it is not as certain as was asked for.
 pub(super) fn conclude(session: &Session, report: &RunReport, as_json: bool) -> Result<(), Failure> {
     let summary = session.conclude(report)?;
+    tell(&summary, report.run(), session.folder().path(), as_json)
+}
+
+/// Prints the answer that lies in `folder`. Exit code 5 if it is not as certain as was asked for.
+pub(super) fn tell(summary: &Summary, run: Option<&RunCost>, folder: &Path, as_json: bool) -> Result<(), Failure> {
     if as_json {
-        print_answer(&summary)?;
+        print_answer(summary)?;
     } else {
-        print(&table(&summary, report.run()))?;
-        print(&format!("\nwritten to {}\n", session.folder().path().display()))?;
+        print(&table(summary, run))?;
+        print(&format!("\nwritten to {}\n", folder.display()))?;
     }
     match (summary.study.until.relative_error, summary.stopped) {
-        (Some(wanted), Stopped::Complete | Stopped::Seconds) => Err(Failure::unmet(anyhow!(
-            "until.relative_error: the mean greatest length is not as certain as {wanted}; more traces would help"
-        ))),
+        // A shard alone is no answer.
+        (Some(wanted), Stopped::Complete | Stopped::Seconds) if summary.shard.is_none() => {
+            Err(Failure::unmet(anyhow!(
+                "until.relative_error: the mean greatest length is not as certain as {wanted}; more traces would help"
+            )))
+        }
         _ => Ok(()),
     }
 }
@@ -50,6 +59,12 @@ pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
     let steps = counted(summary.steps, "step", "steps");
     let events = counted(summary.events, "event", "events");
     line(format_args!("{traces}, {steps}, {events}; {why}"));
+    if let Some(missing) = &summary.missing {
+        line(format_args!(
+            "put together from {} alone; missing are {missing}",
+            counted(summary.blocks, "block", "blocks")
+        ));
+    }
     if let Some(words) = standing(summary) {
         line(format_args!("{words}"));
     }

@@ -12,12 +12,15 @@ use crate::cli::interrupt::{Guard, Last};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The shards' folders, all of them
+    /// The parts' folders, all of them, in any order
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
     /// The folder for what comes out; must not hold another study
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Take the parts that are there, also those under way, and say what they do; what is missing is named
+    #[arg(long)]
+    partial: bool,
     #[command(flatten)]
     base: BaseArgs,
     /// Print the summary as one JSON document
@@ -27,7 +30,7 @@ pub(crate) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let mut guard = None;
-    let merged = merge(&args.folders, args.base.folder(), &args.out, |folder| {
+    let merged = merge(&args.folders, args.partial, args.base.folder(), &args.out, |folder| {
         tell(folder);
         let folder = folder.clone();
         guard = Some(Guard::new(Last::TakeBack(Box::new(move || folder.take_back()))));

@@ -6,6 +6,8 @@ mod merge;
 mod replay;
 mod run;
 mod show;
+mod stop;
+mod time;
 
 use std::path::PathBuf;
 

@@ -1,16 +1,18 @@
 //! `tautline study run` and `tautline study resume`.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::anyhow;
 use tautline::engine::{Engine, Job};
-use tautline::session::{Computed, Folder, Saved, Session};
-use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, State, Stopped, Study, run as go};
+use tautline::session::{Computed, Folder, Saved, Session, answered};
+use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, State, Stopped, Study, read_blocks, run as go};
 
-use super::answer::{conclude, duration, standing};
-use super::base::{BaseArgs, tell};
+use super::answer::{conclude, duration, standing, tell as tell_answer};
+use super::base::{BaseArgs, WaitArgs, tell};
+use super::stop::StopArgs;
 use crate::cli::engine::{EngineArgs, of_studies};
 use crate::cli::failure::Failure;
 use crate::cli::input::{note, warn};
@@ -37,9 +39,20 @@ pub(crate) struct RunArgs {
     /// The seed, instead of the file's
     #[arg(long, allow_negative_numbers = true, value_name = "S")]
     seed: Option<u64>,
-    /// Do only every N-th block, from the K-th on, counted from 0; `study merge` puts the shards together
+    /// Do only every N-th block, from the K-th on, counted from 0; `study merge` puts the shards together. K@A-B stands
+    /// for the tasks of an array: task K of those numbered from A to B
     #[arg(long, value_name = "K/N", default_value = "0/1", hide_default_value = true)]
     shard: Shard,
+    /// Do only the blocks from A on, counted from 0, up to that before B; of these the shard, if one is given
+    #[arg(long, value_name = "A..B", value_parser = read_blocks)]
+    blocks: Option<Range<u64>>,
+    /// Begin, or go on with what is there, however often this is called: one that is done is told and left as it is
+    #[arg(long)]
+    resume: bool,
+    #[command(flatten)]
+    stop: StopArgs,
+    #[command(flatten)]
+    wait: WaitArgs,
     /// Check everything, say what it would cost, and stop
     #[arg(long)]
     dry_run: bool,
@@ -60,16 +73,31 @@ pub(crate) struct ResumeArgs {
     #[command(flatten)]
     base: BaseArgs,
     #[command(flatten)]
+    stop: StopArgs,
+    #[command(flatten)]
+    wait: WaitArgs,
+    #[command(flatten)]
     engine: EngineArgs,
     /// Print the summary as one JSON document
     #[arg(long)]
     json: bool,
 }
 
+impl RunArgs {
+    /// Which part of the study is asked for.
+    fn part(&self) -> Shard {
+        let part = self.blocks.clone().and_then(|blocks| self.shard.within(blocks));
+        part.unwrap_or(self.shard)
+    }
+}
+
 /// How many anchors are looked at for whether they stand where they were meant to.
 const WARNED: usize = 8;
 
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
+    let is_repeated = args.resume || args.stop.is_given();
+    let guard = Guard::new(nothing_new(is_repeated, None));
+    args.stop.set()?;
     let (mut plan, base) = match &args.file {
         Some(file) => (Plan::read(file)?, file.parent().map(Path::to_owned).unwrap_or_default()),
         None => (Plan::parse(EXAMPLE)?, PathBuf::new()),
@@ -81,9 +109,15 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     plan.run.stride = args.trade.stride.unwrap_or(plan.run.stride);
     plan.run.simplify = args.trade.simplify.or(plan.run.simplify);
     args.engine.check(plan.run.precision)?;
-    if args.shard.of() > 1 && (plan.until.relative_error.is_some() || plan.until.seconds.is_some()) {
+    let shard = args.part();
+    if shard != Shard::WHOLE && plan.until.seconds.is_some() {
         return Err(Failure::input(anyhow!(
-            "--shard: a shard cannot know when the whole study is certain enough; leave out [until]"
+            "--shard: what a shard does must not depend on its machine; leave out until.seconds, or give --stop-after"
+        )));
+    }
+    if shard != Shard::WHOLE && plan.until.relative_error.is_some() && plan.outputs.traces {
+        return Err(Failure::input(anyhow!(
+            "--shard: which rows there are is known only once all shards are merged; leave out outputs.traces or [until]"
         )));
     }
     let located = |e: PlanError| match &args.file {
@@ -101,26 +135,41 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         return dry_run(&study, args);
     }
     let stem = args.file.as_deref().and_then(Path::file_stem).map_or("example".into(), |s| s.to_string_lossy());
-    let part = if args.shard == Shard::WHOLE {
+    let part = if shard == Shard::WHOLE {
         String::new()
     } else {
-        format!("-{}", args.shard.to_string().replace('/', "-of-"))
+        format!("-{}", shard.to_string().replace('/', "-of-").replace(' ', "-").replace("..", "-to-"))
     };
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-study{part}")));
+    if args.resume
+        && let Some(summary) = answered(&out, &study, shard)?
+    {
+        return tell_answer(&summary, None, &out, args.json);
+    }
     // An engine that is refused leaves no folder behind.
     let engines = Engines::open(&args.engine, &study)?;
-    let folder = Arc::new(Folder::make(&out)?);
-    let guard = Guard::new(Last::TakeBack(Box::new({
-        let folder = folder.clone();
-        move || folder.take_back()
-    })));
-    let begun = Session::begin(folder.clone(), study.clone(), &base, args.shard);
+    let folder = Arc::new(args.wait.take(|| Folder::make(&out))?);
+    guard.change(nothing_new(is_repeated, Some(folder.clone())));
+    let begin = if args.resume { Session::begin_or_raise } else { Session::begin };
+    let begun = begin(folder.clone(), study.clone(), &base, shard);
     tell(&folder);
     let ended = begun.map_err(Failure::from).and_then(|session| proceed(Arc::new(session), &guard, engines, args.json));
     if ended.is_err() {
         folder.take_back();
     }
     ended
+}
+
+/// What is done where a run is stopped before anything new is done. One that can be repeated is to be.
+fn nothing_new(is_repeated: bool, folder: Option<Arc<Folder>>) -> Last {
+    let take_back = move || folder.iter().for_each(|folder| folder.take_back());
+    match is_repeated {
+        true => Last::Save(Box::new(move || {
+            take_back();
+            Failure::checkpoint(anyhow!("stopped before it went on: repeat the command"))
+        })),
+        false => Last::TakeBack(Box::new(take_back)),
+    }
 }
 
 /// What is said of a study that is stopped before anything new is done.
@@ -133,7 +182,8 @@ fn stopped_before(folder: &Path) -> Last {
 
 pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     let guard = Guard::new(stopped_before(&args.folder));
-    let folder = Arc::new(Folder::open(&args.folder)?);
+    args.stop.set()?;
+    let folder = Arc::new(args.wait.take(|| Folder::open(&args.folder))?);
     tell(&folder);
     let session = Session::resume(folder.clone(), args.base.folder());
     tell(&folder);
@@ -179,6 +229,7 @@ fn stopped(session: &Session) -> Failure {
         Ok(saved) => saved,
         Err(error) => return error.into(),
     };
+    session.folder().give_up();
     // Past its end there is nothing new, but that what there is to say may not be written yet.
     let what = match stopped {
         Stopped::Unfinished => format!("{done} of {all} traces are saved: go on"),
@@ -217,7 +268,7 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
     let plan = study.plan();
     let Engines { mut engines, on } = Engines::open(&args.engine, study)?;
     let (name, precision) = (engines[0].name(), engines[0].precision_name());
-    let state = Mutex::new(State::new(study, args.shard));
+    let state = Mutex::new(State::new(study, args.part()));
     let clock = Instant::now();
     let mut first = None;
     let outcome = go(study, &mut engines, &state, &Job::new(), |_, _, traces| {
@@ -237,7 +288,7 @@ fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
         study.models().len(),
     );
     if let Some((traces, took)) = first.filter(|&(traces, _)| traces > 0) {
-        let share = plan.run.count() as f64 / f64::from(args.shard.of()) / traces as f64;
+        let share = study.places(args.part()) as f64 / traces as f64;
         let all = Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX);
         text += &format!("about {}, going by the first {traces} of the traces\n", duration(all));
         if let Some(steps) = standing(&state.lock().unwrap_or_else(PoisonError::into_inner).summary(study)) {

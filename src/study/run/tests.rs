@@ -1,9 +1,10 @@
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::*;
 use crate::engine::Cpu;
 use crate::study::opened::ANSWERS;
-use crate::study::{Plan, merge};
+use crate::study::random::{Purpose, Random};
+use crate::study::{Plan, StateError, merge};
 
 /// Two anchors, and blocks of 7 traces of which the last is smaller.
 const STUDY: &str = "[scene]\nbuilt_in = \"rooms\"\nanchor = { sample = 2 }\n\
@@ -45,6 +46,14 @@ fn stopped_after_each(study: &Study, shard: Shard, size: u64) -> (State, Vec<Tra
     }
 }
 
+/// Puts parts together that have their places as names.
+fn merged<'a>(study: &Study, parts: impl Iterator<Item = &'a State>, is_partial: bool) -> Result<State, StateError> {
+    let parts: Vec<&State> = parts.collect();
+    let paths: Vec<PathBuf> = (0..parts.len()).map(|i| PathBuf::from(i.to_string())).collect();
+    let load = |path: &Path| Ok(parts[path.to_str().unwrap().parse::<usize>().unwrap()].clone());
+    merge(study, &paths, is_partial, load)
+}
+
 #[test]
 fn a_study_that_is_stopped_within_blocks_ends_the_same() {
     let study = study();
@@ -64,8 +73,7 @@ fn a_study_that_is_stopped_within_blocks_ends_the_same() {
     }
     // Shards too, and put together.
     let shards: Vec<_> = (0..3).map(|k| stopped_after_each(&study, Shard::new(k, 3).unwrap(), 4)).collect();
-    let states = shards.iter().map(|shard| (Path::new("").to_owned(), shard.0.clone())).collect();
-    assert!(merge(&study, states).unwrap().summary(&study) == answer);
+    assert!(merged(&study, shards.iter().map(|shard| &shard.0), false).unwrap().summary(&study) == answer);
     // The last block, of 5 traces, is the second of the shard with number 2.
     assert_eq!(
         shards[2].1.iter().map(|record| record.trace).collect::<Vec<_>>(),
@@ -98,6 +106,76 @@ fn a_study_ends_with_a_whole_block() {
         let (state, records, _) = stopped_after_each(&study, Shard::WHOLE, 3);
         assert!(state.stopped() != Stopped::Unfinished && state.traces().is_multiple_of(7), "{until}");
         assert_eq!(records.len() as u64, state.traces(), "{until}");
+    }
+}
+
+/// Any parts, in any order, some of them stopped on the way, some put together before: the first block with which the
+/// study is certain enough ends it.
+#[test]
+fn parts_in_any_order_end_where_one_run_does() {
+    let text = STUDY.replace("traces = 40", "traces = 250");
+    for (until, expected) in [("", None), ("[until]\nrelative_error = 0.2\n", Some(Stopped::RelativeError))] {
+        let study = Study::open(Plan::parse(&(text.clone() + until)).unwrap(), Path::new("")).unwrap();
+        let (whole, ..) = stopped_after_each(&study, Shard::WHOLE, 70);
+        assert_eq!(whole.stopped(), expected.unwrap_or(Stopped::Complete));
+        let blocks = whole.blocks().count() as u64;
+        assert!(expected.is_none() || (blocks > 10 && blocks < 30), "{blocks}");
+        let answer = whole.summary(&study);
+        let mut parts: Vec<State> = ["0/3 of blocks 0..20", "2/3 of blocks 0..20", "0/1 of blocks 20..30"]
+            .into_iter()
+            .chain(["1/3 of blocks 0..20", "0/2 of blocks 30..99", "1/2 of blocks 30..99"])
+            .map(|part| stopped_after_each(&study, part.parse().unwrap(), 5).0)
+            .collect();
+        let mut random = Random::new(7, Purpose::Walk, 0);
+        for _ in 0..20 {
+            for i in (1..parts.len()).rev() {
+                parts.swap(i, (random.unit() * (i + 1) as f64) as usize);
+            }
+            assert!(merged(&study, parts.iter(), false).unwrap().summary(&study) == answer);
+            // Some of them first.
+            let some = merged(&study, parts[..3].iter(), true).unwrap();
+            let both = merged(&study, [&some].into_iter().chain(&parts[3..]), false);
+            if some.is_partial() {
+                let told = some.summary(&study);
+                assert!(told.missing.is_some() && told.blocks == some.blocks().count() as u64 && told.traces < 250);
+                assert!(both.unwrap().summary(&study) == answer);
+                let error = merged(&study, [&some].into_iter().chain(&parts[2..]), true).err().unwrap();
+                assert!(error.what.contains(" is in 0 too"), "{error}");
+            } else {
+                assert!(expected.is_some() && some.summary(&study) == answer);
+            }
+        }
+    }
+}
+
+/// A study with more traces is as if it had had them from the beginning.
+#[test]
+fn traces_can_be_raised() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.bin");
+    for until in ["", "[until]\nrelative_error = 0.25\n"] {
+        let with = |traces: u64| {
+            Study::open(Plan::parse(&(STUDY.replace("= 40", &format!("= {traces}")) + until)).unwrap(), Path::new(""))
+                .unwrap()
+        };
+        for shard in ["0/1", "1/3", "2/3", "0/1 of blocks 1..9"] {
+            let shard: Shard = shard.parse().unwrap();
+            let (large, truth) = (with(180), stopped_after_each(&with(180), shard, 50).0.summary(&with(180)));
+            for traces in [5, 40, 42, 110, 140, 175] {
+                let small = with(traces);
+                stopped_after_each(&small, shard, 50).0.save(&path).unwrap();
+                assert!(State::load(&path, &large).err().unwrap().is_foreign());
+                assert!(State::load_raised(&path, &large, traces + 1).err().unwrap().is_foreign());
+                let state = Mutex::new(State::load_raised(&path, &large, traces).unwrap());
+                let done = state.lock().unwrap().place(&large);
+                let is_over = state.lock().unwrap().stopped() == Stopped::RelativeError;
+                assert!(is_over || done == small.places(shard), "what was done stays done");
+                state.lock().unwrap().save(&path).unwrap();
+                State::load(&path, &large).unwrap();
+                run(&large, &mut engines(&large), &state, &Job::new(), |_, _, _| Ok::<(), ()>(())).unwrap();
+                assert!(state.into_inner().unwrap().summary(&large) == truth, "{traces} {shard}");
+            }
+        }
     }
 }
 

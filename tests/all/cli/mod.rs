@@ -19,6 +19,7 @@ mod safety;
 mod scenes;
 mod schema;
 mod study;
+mod study_shared;
 mod traces;
 mod trade;
 mod tradeoff;

@@ -73,7 +73,7 @@ fn the_answer_is_the_same_on_all_engines_threads_and_shards() {
     folder.refused(2, "study merge k0 k2 --out no", &["shard 1/3 is missing"]);
     folder.refused(2, "study merge k0 k1 k1 k2 --out no", &["shard 1/3 is there twice"]);
     folder.done("study run s.toml --out q --shard 3/4");
-    folder.refused(2, "study merge k0 k1 k2 q --out no", &["one of 4 shards"]);
+    folder.refused(2, "study merge k0 k1 k2 q --out no", &["q: block 3 is in k0 too"]);
     folder.done("study run s.toml --out other --seed 2 --shard 1/3");
     assert!(answer(&folder, "other") != answer(&folder, "k1"));
     folder.refused(2, "study merge k0 other k2 --out no", &["another study"]);
@@ -158,7 +158,10 @@ fn a_study_ends_when_it_is_certain_enough() {
     let short = folder.run(&format!("study run u.toml --out c --traces {}", traces - 250));
     assert_eq!(short.code, Some(5), "{}", short.stderr);
     assert!(short.stderr.contains("relative_error") && folder.path("c/summary.json").exists());
-    folder.refused(2, "study run u.toml --out d --shard 0/2", &["--shard"]);
+    folder.write("v.toml", format!("{STUDY}[until]\nseconds = 5\n"));
+    folder.refused(2, "study run v.toml --out d --shard 0/2", &["--shard"]);
+    folder.write("w.toml", format!("{STUDY}[until]\nrelative_error = 0.02\n[outputs]\ntraces = true\n"));
+    folder.refused(2, "study run w.toml --out d --shard 0/2", &["--shard", "outputs.traces"]);
 }
 
 /// Trace and length of each row of `traces.parquet`.

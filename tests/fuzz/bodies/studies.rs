@@ -76,7 +76,9 @@ pub(super) fn load(input: &[u8], folder: &Path) {
     for bytes in [input, &forged] {
         fs::write(&path, bytes).expect("the folder can be written to");
         if let Ok(state) = State::load(&path, study)
-            && let Ok(whole) = tautline::study::merge(study, vec![(path.clone(), state)])
+            && let Ok(whole) = tautline::study::merge(study, std::slice::from_ref(&path), false, |_| {
+                Ok::<_, tautline::study::StateError>(state.clone())
+            })
         {
             whole.save(&path).expect("it can be saved");
             State::load(&path, study).unwrap_or_else(|e| panic!("{e}"));
