@@ -281,8 +281,8 @@ class Answer:
 
     @property
     def contacts(self) -> Any:
-        """The wall ends at which ropes turn, the busiest first: a DataFrame of pandas by vertex. ``share`` is that of the
-        traces whose rope turns there at the end, ``wraps`` how often a trace wraps round it."""
+        """The wall ends that ropes touch, the busiest first: a DataFrame of pandas by vertex. ``share`` is that of all
+        steps after which the rope has a contact with it, ``wraps`` how often a trace wraps round it."""
         rows = {
             c["vertex"]: {
                 "x": c["at"][0],
@@ -302,9 +302,9 @@ class Answer:
     def map(self) -> Any:
         """The plane, cell by cell: a Dataset of xarray, or where that is not installed a dict of arrays.
 
-        Variables, each of shape (rows, columns): ``contacts``, how often a trace has a wrap there; ``length``, how long the
-        rope is on the mean while its free end is there; both with ``_low`` and ``_high`` for the interval; ``visits``, how
-        many points lie there. ``x`` and ``y`` are the middles of the cells. Where nothing came there is NaN, or 0 visits.
+        Variables, each of shape (rows, columns): ``contacts``, with how many wall ends there the rope has a contact after a
+        step, on the mean; ``length``, how long the rope is on the mean while its free end is there; both with ``_low`` and
+        ``_high`` for the interval; ``visits``, how often a free end was seen there. ``x`` and ``y`` are the middles of the cells. Where nothing came there is NaN, or 0 visits.
         """
         found = self.summary.get("map")
         if found is None:
