@@ -117,6 +117,39 @@ impl Gatherer {
     }
 }
 
+/// The traces whose points are the rows of a table in memory: as those of a file, they follow each other, and their
+/// numbers increase, as the steps of one trace do where rows have steps. `ids` are the rows' traces, and `points` gives
+/// the points of some of them. O(rows).
+///
+/// # Errors
+///
+/// The first row that will not do, counted from 0, and what is wrong with it.
+///
+/// # Panics
+///
+/// If there are fewer steps or points than `ids`.
+///
+/// ```
+/// use tautline::trace::traces_of_rows;
+/// let rows = [[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]];
+/// let points = |some: std::ops::Range<usize>| rows[some].iter().map(|&p| p.into());
+/// let traces = traces_of_rows(&[0, 0, 7], None, points).unwrap();
+/// assert_eq!((traces.len(), traces[1].id, traces[1].points.len()), (2, 7, 1));
+/// assert_eq!(traces_of_rows(&[7, 7, 0], None, points).unwrap_err().0, 2);
+/// ```
+pub fn traces_of_rows<I>(
+    ids: &[u64],
+    steps: Option<&[u64]>,
+    points: impl Fn(Range<usize>) -> I,
+) -> Result<Vec<Trace>, (usize, String)>
+where
+    I: Iterator<Item = DVec2>,
+{
+    let mut gatherer = Gatherer::default();
+    gatherer.extend(ids, steps, points)?;
+    Ok(gatherer.traces.into())
+}
+
 /// How many numbers from the first on are the same.
 fn equal(ids: &[u64]) -> usize {
     // Blocks are compared without branches, so that several numbers are looked at in one instruction.

@@ -17,6 +17,7 @@ mod settle_truth;
 mod settled;
 mod slide;
 
+pub use gather::traces_of_rows;
 pub use given::Trace;
 pub use read::{TraceReader, read_traces};
 pub(crate) use settle::{first_violation, settle_clear};

@@ -1,0 +1,39 @@
+//! The compiled part of the Python package `tautrope`: it takes arrays and tables in, has the library compute, and hands
+//! arrays and tables back. What users see is in `tautrope/`, in Python.
+
+mod arrow_in;
+mod compute;
+mod fault;
+mod live;
+mod ropes;
+mod scene;
+mod stored;
+mod study;
+mod table;
+mod tables;
+mod traces;
+
+use pyo3::prelude::*;
+
+#[pymodule(gil_used = true)]
+mod _tautrope {
+    #[pymodule_export]
+    use super::live::LiveRope;
+    #[pymodule_export]
+    use super::ropes::Ropes;
+    #[pymodule_export]
+    use super::scene::{Scene, built_in_step, engines};
+    #[pymodule_export]
+    use super::study::{Answer, Study, example_study};
+    #[pymodule_export]
+    use super::table::Table;
+    #[pymodule_export]
+    use super::traces::Traces;
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(m: &Bound<'_, PyModule>) -> PyResult<()> {
+        m.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

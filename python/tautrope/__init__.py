@@ -1,0 +1,42 @@
+"""Taut ropes of dragged traces among walls.
+
+A rope is tied to an anchor and held at its free end. The free end is dragged along a trace through a plane full of walls.
+After every step, which wall ends does the taut rope bend round, and how long is it? This package answers that for
+thousands to millions of traces at once, and exactly.
+
+- `Scene` has the walls and the anchor: from a file, an array, or shapely's geometries.
+- `Scene.evaluate` gives the `Ropes` of your traces, as tables, arrays and lines.
+- `Study` draws random walks, as many as you like, and says how long a rope they need and where it touches walls.
+- `LiveRope` follows one free end, move by move.
+
+>>> import numpy as np, tautrope
+>>> scene = tautrope.Scene.built_in("rooms")
+>>> ropes = scene.evaluate(scene.walks(100, steps=200))
+>>> bool(ropes["max_length"].max() >= ropes["length"].max())
+True
+"""
+
+from ._errors import EngineError, InputError, ReadError, StudyError, TautropeError, ViolationError, WriteError
+from ._live import LiveRope
+from ._ropes import Ropes
+from ._scene import Scene
+from ._study import Answer, Study
+from ._table import Table
+from ._tautrope import __version__
+
+__all__ = [
+    "Answer",
+    "EngineError",
+    "InputError",
+    "LiveRope",
+    "ReadError",
+    "Ropes",
+    "Scene",
+    "Study",
+    "StudyError",
+    "Table",
+    "TautropeError",
+    "ViolationError",
+    "WriteError",
+    "__version__",
+]

@@ -1,0 +1,204 @@
+"""The ropes of many traces."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _tautrope as _core
+from ._errors import InputError
+from ._table import Table, split
+
+if TYPE_CHECKING:
+    from ._scene import Scene
+
+
+class Picture(str):
+    """A picture as SVG, which notebooks show."""
+
+    def _repr_svg_(self) -> str:
+        return str(self)
+
+
+class Ropes:
+    """The taut ropes of many traces, as `Scene.evaluate` gives them: a table with one row a trace, and more.
+
+    Columns, by ``ropes["length"]`` and in every DataFrame:
+
+    - ``trace``, ``status`` (``ok`` or ``violation``), ``steps``
+    - ``length``, ``max_length``: how long the rope is at the end, and at its longest after any step
+    - ``depth``, ``max_depth``: how many turns it has
+    - ``events``: how many wraps and unwraps there were
+    - ``wraps``, ``sides``: where it turns, from the anchor, and on which side of the rope each wall end lies
+    - ``pull``: the unit vector along which it pulls the free end
+    - ``labels``: the names of the wall ends at which it turns, if the scene has names
+
+    >>> import tautrope
+    >>> scene = tautrope.Scene([[[-1, 0], [1, 0]]], anchor=(0, -1))
+    >>> ropes = scene.evaluate([[(0, -1), (3, -1), (3, 1), (0, 1)], [(0, -1), (0, -2)]])
+    >>> ropes["max_length"].round(3)
+    array([3.606, 1.   ])
+    >>> ropes.rope(0).tolist()
+    [[0.0, -1.0], [1.0, 0.0], [0.0, 1.0]]
+    >>> ropes.lengths[0].round(3)
+    array([0.   , 3.   , 3.606, 2.828])
+    """
+
+    def __init__(self, core: _core.Ropes, scene: Scene) -> None:
+        self._core = core
+        self._scene = scene
+
+    @property
+    def scene(self) -> Scene:
+        """The scene in which they are."""
+        return self._scene
+
+    @property
+    def engine(self) -> str:
+        """What evaluated them, and on what."""
+        return self._core.engine
+
+    @cached_property
+    def results(self) -> Table:
+        """One row a trace."""
+        return Table(self._core.results())
+
+    @cached_property
+    def events(self) -> Table:
+        """One row for every wrap and unwrap, in order: ``trace``, ``step``, ``kind``, ``vertex``, ``x``, ``y``, ``side``."""
+        return Table(self._core.events())
+
+    @property
+    def columns(self) -> list[str]:
+        """The names of the columns."""
+        return self.results.columns
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def keys(self) -> list[str]:
+        """The names of the columns."""
+        return self.columns
+
+    def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
+        """A column as an array; see `Table`."""
+        return self.results[name]
+
+    def to_numpy(self) -> dict[str, np.ndarray[Any, Any]]:
+        """All columns as arrays, by name."""
+        return self.results.to_numpy()
+
+    def to_pandas(self) -> Any:
+        """The table as a DataFrame of pandas."""
+        return self.results.to_pandas()
+
+    def to_polars(self) -> Any:
+        """The table as a DataFrame of polars."""
+        return self.results.to_polars()
+
+    def to_arrow(self) -> Any:
+        """The table as one of pyarrow."""
+        return self.results.to_arrow()
+
+    def to_geopandas(self) -> Any:
+        """The table as a GeoDataFrame: the ropes at the end are its geometry."""
+        import geopandas
+
+        frame = self.to_pandas().drop(columns=["wraps", "sides", *(["labels"] if "labels" in self.columns else [])])
+        return geopandas.GeoDataFrame(frame, geometry=self.lines())
+
+    def __arrow_c_stream__(self, requested_schema: Any = None) -> Any:
+        return self.results.__arrow_c_stream__(requested_schema)
+
+    @cached_property
+    def lengths(self) -> np.ndarray[Any, Any]:
+        """The rope's length after each step: an array of shape (n, points) if all traces have as many points, else an
+        array of arrays."""
+        return _even(*self._core.lengths())
+
+    @cached_property
+    def points(self) -> np.ndarray[Any, Any]:
+        """The traces' points: an array of shape (n, points, 2) if all have as many, else an array of arrays."""
+        return _even(*self._core.points())
+
+    def lines(self) -> np.ndarray[Any, Any]:
+        """The taut ropes at the end as shapely's LineStrings, from the anchor to the free end."""
+        import shapely
+
+        offsets, points = self._core.lines()
+        rope = np.repeat(np.arange(len(self)), np.diff(offsets))
+        lines: np.ndarray[Any, Any] = shapely.linestrings(points, indices=rope)
+        return lines
+
+    def rope(self, trace: int, step: int | None = None) -> np.ndarray[Any, np.dtype[np.float64]]:
+        """The taut rope of a trace after a step, at its end without one: the anchor, its turns and the free end, an array of
+        shape (turns + 2, 2)."""
+        place = self._place(trace)
+        if step is None:
+            offsets, points = self._core.lines()
+            return points[offsets[place] : offsets[place + 1]]
+        return self._core.rope_at(place, step)
+
+    def _place(self, trace: int) -> int:
+        numbers = self["trace"]
+        place = int(np.searchsorted(numbers, trace)) if trace >= 0 else len(numbers)
+        if place == len(numbers) or numbers[place] != trace:
+            raise InputError(f"there is no trace {trace}")
+        return place
+
+    def write(
+        self, results: str | os.PathLike[str] | None = None, events: str | os.PathLike[str] | None = None
+    ) -> None:
+        """Writes one row a trace to ``results`` and one row an event to ``events``: ``.parquet``, ``.csv`` or ``.jsonl``.
+
+        The files are those of ``tautline eval --out --events``, to the byte.
+        """
+        self._core.write(*(None if path is None else Path(path) for path in (results, events)))
+
+    def svg(self, *traces: int, step: int | None = None, dark: bool | None = None) -> Picture:
+        """The picture of up to six traces and their ropes as SVG, after a step or at the end.
+
+        >>> import tautrope
+        >>> scene = tautrope.Scene.built_in("rooms")
+        >>> ropes = scene.evaluate(scene.walks(10, steps=50))
+        >>> ropes.svg(3)[:4], ropes.svg(3, step=20) == ropes.svg(3)
+        ('<svg', False)
+        """
+        chosen = traces or (int(self["trace"][0]),)
+        return Picture(self._core.svg([self._place(trace) for trace in chosen], step, dark))
+
+    def plot(self, *traces: int, ax: Any = None, step: int | None = None) -> Any:
+        """Draws the scene, some traces and their ropes with matplotlib, and returns the axes."""
+        ax = self.scene.plot(ax)
+        for trace in traces or (int(self["trace"][0]),):
+            walked = self.points[self._place(trace)]
+            walked = walked if step is None else walked[: step + 1]
+            (line,) = ax.plot(*walked.T, linewidth=0.8, alpha=0.6, label=f"trace {trace}")
+            ax.plot(*self.rope(trace, step).T, "--", color=line.get_color(), label=f"its rope {trace}")
+        return ax
+
+    def __reduce__(self) -> Any:
+        return _restored, (self.scene, self._core.state())
+
+    def __repr__(self) -> str:
+        return f"<Ropes: {len(self)} traces, engine {self.engine}>"
+
+
+def _restored(scene: Scene, state: bytes) -> Ropes:
+    return Ropes(_core.Ropes.restored(scene._core, state), scene)
+
+
+def _even(offsets: np.ndarray[Any, Any], values: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Lists as one array if they are equally long."""
+    counts = np.diff(offsets)
+    if len(counts) and (counts == counts[0]).all():
+        return values.reshape(len(counts), counts[0], *values.shape[1:])
+    return split(offsets, values)
