@@ -9,7 +9,7 @@ mod update;
 
 pub use moment::Moment;
 pub use record::{Event, EventKind, Status, TraceRecord};
-pub(crate) use replay::{Lasting, spans};
+pub(crate) use replay::{Lasting, lasting};
 pub use replay::{moments, replay};
 pub use stack::{Contact, Rope, Side};
 pub use update::{Leg, Sweep};

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::{Event, EventKind, Moment, Rope};
+use super::stack::LastLeg;
+use super::{Contact, Event, EventKind, Moment, Rope};
 
 /// A trace's rope on its way through the events.
 struct Replay<'a> {
@@ -111,55 +112,66 @@ fn crossing([o, p]: [DVec2; 2], [a, b]: [DVec2; 2]) -> Option<f64> {
 }
 
 /// What lasts over some steps of a trace.
-#[derive(Debug)]
-pub(crate) enum Lasting<'a> {
-    /// The rope has the same contacts after each of these steps.
-    Rope(&'a Rope, Range<u64>),
-    /// A contact, for so many steps: 0 where the rope bent round the same wall end before it came, and still does. It
-    /// is told of as it goes, or at the end.
-    Contact {
-        /// The number of its wall end.
-        vertex: u32,
-        /// After how many steps it is there.
-        steps: u64,
-    },
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Lasting {
+    /// The runs of steps after which the rope has the same contacts, in order: all steps.
+    pub spans: Vec<Span>,
+    /// The contacts, in the order in which they went, and after them those that are there at the end.
+    pub held: Vec<Held>,
 }
 
-/// Calls `each` with each run of steps without an event, in order, and each contact. `last` is the number of the last
-/// step, `vertices` are the scene's. O(events), and contacts for those with another wall end than before.
+/// Steps after each of which the rope has the same contacts.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Span {
+    pub steps: Range<usize>,
+    pub leg: LastLeg,
+}
+
+/// A contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Held {
+    /// The number of its wall end.
+    pub vertex: u32,
+    /// After how many steps it is there: 0 where the rope bent round the same wall end before it came, and still does.
+    pub steps: u64,
+}
+
+/// What lasts in a trace. `last` is the number of the last step, `vertices` are the scene's. O(events), and contacts
+/// for those with another wall end than before.
 ///
 /// # Panics
 ///
 /// If the events are not a rope's: a vertex that is not there, or an unwrap of an empty rope.
-pub(crate) fn spans(anchor: DVec2, vertices: &[DVec2], last: u64, events: &[Event], mut each: impl FnMut(Lasting<'_>)) {
+pub(crate) fn lasting(anchor: DVec2, vertices: &[DVec2], last: u64, events: &[Event]) -> Lasting {
     let (mut rope, mut replay) = (Rope::new(anchor), Replay::new(vertices, events));
+    let mut all = Lasting::default();
     // After which step each contact came; none for one whose wall end the rope had a contact with already.
     let mut since: Vec<Option<u64>> = Vec::new();
     let steps = |since: Option<u64>, until: u64| since.map_or(0, |since| until - since);
     let mut start = 0;
     while let Some(event) = replay.next() {
-        let step = u64::from(event.step);
+        let step = event.step as usize;
         if step > start {
-            each(Lasting::Rope(&rope, start..step));
+            all.spans.push(Span { steps: start..step, leg: rope.last_leg() });
             start = step;
         }
         match event.kind {
             EventKind::Wrap => {
                 // Those of a winding rope come again soon.
                 let again = rope.contacts().iter().rev().any(|contact| contact.vertex == event.vertex);
-                since.push((!again).then_some(step));
+                since.push((!again).then_some(step as u64));
             }
             EventKind::Unwrap => {
                 let since = since.pop().expect("an unwrap follows a wrap");
-                each(Lasting::Contact { vertex: event.vertex, steps: steps(since, step) });
+                all.held.push(Held { vertex: event.vertex, steps: steps(since, step as u64) });
             }
         }
         replay.play(&mut rope);
     }
-    each(Lasting::Rope(&rope, start..last + 1));
-    for (contact, since) in rope.contacts().iter().zip(since) {
-        each(Lasting::Contact { vertex: contact.vertex, steps: steps(since, last + 1) });
-    }
+    all.spans.push(Span { steps: start..last as usize + 1, leg: rope.last_leg() });
+    let held = |(contact, since): (&Contact, _)| Held { vertex: contact.vertex, steps: steps(since, last + 1) };
+    all.held.extend(rope.contacts().iter().zip(since).map(held));
+    all
 }
 
 #[cfg(test)]
@@ -214,20 +226,20 @@ mod tests {
         let mut reference = Reference::new(model.clone());
         for trace in walks(&model, Walker { step: 2.0, steps: 200, seed: 6 }, 12) {
             let record = reference.evaluate(&[settle(&model, &trace)], &Job::new()).unwrap().remove(0);
-            let (mut ropes, mut held) = (Vec::new(), BTreeMap::new());
-            spans(model.anchor(), model.vertices(), record.steps, &record.events, |lasting| match lasting {
-                Lasting::Rope(rope, steps) => ropes.extend(steps.map(|step| (step as usize, rope.clone()))),
-                Lasting::Contact { vertex, steps } => *held.entry(vertex).or_insert(0) += steps,
-            });
+            let lasting = lasting(model.anchor(), model.vertices(), record.steps, &record.events);
+            let spans = lasting.spans.into_iter();
+            let legs: Vec<_> = spans.flat_map(|span| span.steps.map(move |step| (step, span.leg))).collect();
+            let mut held = BTreeMap::new();
+            lasting.held.iter().for_each(|contact| *held.entry(contact.vertex).or_insert(0) += contact.steps);
             let (mut all, mut seen) = (Vec::new(), BTreeMap::new());
             replay(model.anchor(), model.vertices(), trace.points.len(), &record.events, |step, rope| {
-                all.push((step, rope.clone()));
+                all.push((step, rope.last_leg()));
                 let mut vertices: Vec<u32> = rope.contacts().iter().map(|c| c.vertex).collect();
                 vertices.sort_unstable();
                 vertices.dedup();
                 vertices.into_iter().for_each(|vertex| *seen.entry(vertex).or_insert(0) += 1);
             });
-            assert_eq!(ropes, all);
+            assert_eq!(legs, all);
             // Contacts that come and go within a step last for none.
             held.retain(|_, steps| *steps > 0);
             assert_eq!(held, seen);

@@ -83,6 +83,51 @@ impl TautEnd {
     }
 }
 
+/// Ropes with the same contacts, wherever the free end is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LastLeg {
+    /// The taut rope up to the pivot where it bends there.
+    bent: TautEnd,
+    /// The point before the pivot, and the taut rope that passes the pivot straight; `None` at the anchor.
+    straight: Option<(DVec2, TautEnd)>,
+}
+
+impl LastLeg {
+    /// The last contact, or the anchor.
+    #[inline]
+    pub(crate) fn pivot(&self) -> DVec2 {
+        self.bent.at
+    }
+
+    /// The last corner of the taut rope to the free end `a`.
+    #[inline]
+    fn taut_end(&self, a: DVec2) -> TautEnd {
+        match self.straight {
+            Some((prior, before)) if a == self.bent.at || is_straight(prior, self.bent.at, a) => before,
+            _ => self.bent,
+        }
+    }
+
+    /// The taut rope's [`length`](Rope::length) to the free end `a`. O(1).
+    #[inline]
+    pub(crate) fn length(&self, a: DVec2) -> f64 {
+        self.taut_end(a).length_to(a)
+    }
+
+    /// The square of a distance from the pivot: no rope to a free end as near as that is longer than `limit`, as
+    /// [`length`](Self::length) rounds it. Negative if even ropes that end at the pivot may be. O(1).
+    ///
+    /// Both lengths that a rope can have are at most that of the one that bends at the pivot, by the triangle
+    /// inequality and but for roundings, all of which are far below what is taken off here.
+    pub(crate) fn surely_within(&self, limit: f64) -> f64 {
+        let far = limit * SURELY - self.bent.length;
+        if far > 0.0 { far * far * SURELY } else { -1.0 }
+    }
+}
+
+/// The share of a length that is left when 2^-40 of it is taken off.
+const SURELY: f64 = 1.0 - 1.0 / (1u64 << 40) as f64;
+
 /// The rope of one trace: the anchor and the contacts, the last of which is the pivot.
 ///
 /// ```
@@ -134,10 +179,7 @@ impl Rope {
 
     /// Wraps the rope round `vertex`, which stands at `at`; it becomes the pivot. O(1).
     pub fn push(&mut self, vertex: u32, at: DVec2, side: Side) {
-        let from = match self.contacts.last() {
-            None => TautEnd { at: self.anchor, length: 0.0, depth: 0 },
-            Some(_) => self.taut_end(at),
-        };
+        let from = self.taut_end(at);
         self.contacts.push(Contact { vertex, at, side, from });
     }
 
@@ -146,19 +188,28 @@ impl Rope {
         self.contacts.pop()
     }
 
+    /// What all ropes with these contacts have in common. O(1).
+    #[inline]
+    pub(crate) fn last_leg(&self) -> LastLeg {
+        match self.contacts.last() {
+            None => LastLeg { bent: TautEnd { at: self.anchor, length: 0.0, depth: 0 }, straight: None },
+            Some(o) => {
+                let bent = TautEnd { at: o.at, length: o.from.length_to(o.at), depth: o.from.depth + 1 };
+                LastLeg { bent, straight: Some((self.prior(), o.from)) }
+            }
+        }
+    }
+
     /// The last corner of the taut rope when the rope goes on from the pivot to `a`.
     fn taut_end(&self, a: DVec2) -> TautEnd {
-        match self.contacts.last() {
-            None => TautEnd { at: self.anchor, length: 0.0, depth: 0 },
-            Some(o) if o.at == a || is_straight(self.prior(), o.at, a) => o.from,
-            Some(o) => TautEnd { at: o.at, length: o.from.length_to(o.at), depth: o.from.depth + 1 },
-        }
+        self.last_leg().taut_end(a)
     }
 
     /// The length up to the pivot and the number of contacts of the taut rope to a free end that is neither on the
     /// pivot nor such that the rope passes the pivot straight; the way from the pivot is to be added. O(1).
     pub(crate) fn base(&self) -> (f64, u32) {
-        self.contacts.last().map_or((0.0, 0), |o| (o.from.length_to(o.at), o.from.depth + 1))
+        let TautEnd { length, depth, .. } = self.last_leg().bent;
+        (length, depth)
     }
 
     /// The taut rope's length to the free end `a`, in the scene's unit, summed from the anchor on. O(1).
@@ -209,4 +260,56 @@ impl Rope {
 /// Whether a rope from `prior` over `here` to `next` passes `here` straight.
 fn is_straight(prior: DVec2, here: DVec2, next: DVec2) -> bool {
     orient(prior, here, next) == 0.0 && forwards(prior, here, next)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The length of the taut rope, summed from corner to corner.
+    fn summed(rope: &Rope, a: DVec2) -> f64 {
+        let (mut from, mut sum) = (rope.anchor, 0.0);
+        for at in rope.taut(a).iter().map(|contact| contact.at).chain([a]) {
+            sum += from.distance(at);
+            from = at;
+        }
+        sum
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// On a coarse lattice many free ends are on the pivot, or straight on behind it.
+        #[test]
+        fn lengths_are_those_of_the_taut_rope_wherever_it_ends(
+            points in prop::collection::vec((0..4i8, 0..4i8), 1..8),
+            scale in prop::sample::select(vec![1.0, 0.1, 1.1 * 2f64.powi(-440), 1.3 * 2f64.powi(490)]),
+            wide in any::<bool>(),
+        ) {
+            let width = if wide { 1e-9 } else { 1.0 };
+            let mut points: Vec<DVec2> =
+                points.iter().map(|&(x, y)| scale * DVec2::new(f64::from(x), width * f64::from(y))).collect();
+            points.dedup();
+            let mut rope = Rope::new(points[0]);
+            points[1..].iter().for_each(|&at| rope.push(0, at, Side::Left));
+            let leg = rope.last_leg();
+            prop_assert_eq!(leg.pivot(), rope.pivot());
+            for end in 0..64 {
+                let a = scale * DVec2::new(f64::from(end % 8), width * f64::from(end / 8));
+                let length = summed(&rope, a);
+                prop_assert_eq!(leg.length(a), length);
+                prop_assert_eq!(rope.length(a), length);
+                let square = leg.pivot().distance_squared(a);
+                // Whatever is surely within a limit is, for limits right beside the length as well.
+                for limit in [length.next_down(), length * (1.0 - 1e-13), 0.5 * length] {
+                    prop_assert!(length <= limit || square > leg.surely_within(limit), "{} {}", length, limit);
+                }
+                // Nearly all that is within a limit is surely so.
+                let (limit, bent) = (length * (1.0 + 1e-9), leg.bent.length_to(a));
+                prop_assert!(bent > length * (1.0 + 1e-12) || length == 0.0 || square <= leg.surely_within(limit));
+            }
+        }
+    }
 }

@@ -14,7 +14,7 @@ use super::opened::{Source, Study};
 use super::plan_error::PlanError;
 use super::shard::Shard;
 use super::state::{State, Stopped};
-use super::tally::{Block, Counts, Merge, Traced};
+use super::tally::{Block, Counts, Merge};
 use crate::engine::{Engine, EngineError, Job};
 use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
@@ -253,8 +253,7 @@ fn tally(
     records: &[TraceRecord],
     open: Option<Block>,
 ) -> Vec<(u64, usize, Tallied)> {
-    let mut traced =
-        group.traces.iter().zip(records).map(|(trace, record)| Traced::new(&study.tallies.setting, trace, record));
+    let mut traced = &group.traces.iter().zip(records).collect::<Vec<_>>()[..];
     let mut first = open;
     let parts: Vec<_> = study
         .numbers(shard, group.places.clone())
@@ -262,11 +261,11 @@ fn tally(
             let count = (numbers.end - numbers.start) as usize;
             let is_whole = numbers.end == study.block(shard.block(index)).end;
             let block = first.take().unwrap_or_default();
-            (index, is_whole, block, traced.by_ref().take(count).collect::<Vec<_>>())
+            (index, is_whole, block, traced.split_off(..count).expect("the group has the traces of its places"))
         })
         .collect();
-    let count = |(index, is_whole, mut block, part): (u64, bool, Block, Vec<Traced<'_>>)| {
-        block.add(&study.tallies, &part);
+    let count = |(index, is_whole, mut block, part): (u64, bool, Block, &[(&SettledTrace, &TraceRecord)])| {
+        part.iter().for_each(|(trace, record)| block.add(&study.tallies, trace, record));
         let tallied = match is_whole {
             true if block.traces() < study.plan().run.block.into() => {
                 let counts = block.clone().finish(&study.tallies, shard.block(index));

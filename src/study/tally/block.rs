@@ -10,8 +10,10 @@ use super::table::table;
 use super::tally::Tally;
 use super::totals::Totals;
 use super::traced::{Size, Traced};
+use crate::rope::TraceRecord;
 use crate::study::plan_error::PlanError;
 use crate::study::tally;
+use crate::trace::SettledTrace;
 
 macro_rules! blocks {
     ($($(#[$_:meta])* $name:ident: $Answer:ty = $Tally:ty;)*) => {
@@ -50,14 +52,13 @@ macro_rules! blocks {
         }
 
         impl Block {
-            /// Counts its next traces. O(steps looked at by the map + events + steps up to where limits are exceeded).
-            pub(crate) fn add(&mut self, tallies: &Tallies, traced: &[Traced<'_>]) {
-                for traced in traced {
-                    self.traces += 1;
-                    self.looks += traced.record.steps + 1;
-                    self.totals.add(traced);
-                    $(tallies.$name.add(&mut self.$name, traced);)*
-                }
+            /// Counts its next trace. O(steps looked at by the map + events + steps up to where limits are exceeded).
+            pub(crate) fn add(&mut self, tallies: &Tallies, trace: &SettledTrace, record: &TraceRecord) {
+                let traced = Traced::new(&tallies.setting, trace, record);
+                self.traces += 1;
+                self.looks += record.steps + 1;
+                self.totals.add(&traced);
+                $(tallies.$name.add(&mut self.$name, &traced);)*
             }
 
             /// The counts of the block, once it is whole.

@@ -13,7 +13,6 @@ use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
 use super::traced::{Size, Traced};
-use crate::rope::Lasting;
 use crate::study::estimate::Estimate;
 use crate::study::plan_error::PlanError;
 
@@ -57,13 +56,11 @@ impl Tally for Contacts {
     }
 
     fn add(&self, part: &mut Self::Part, traced: &Traced<'_>) {
-        traced.spans(|lasting| {
-            if let Lasting::Contact { vertex, steps } = lasting {
-                let held = part.entry(vertex).or_default();
-                held.wraps += 1;
-                held.steps += steps;
-            }
-        });
+        for contact in &traced.lasting.held {
+            let held = part.entry(contact.vertex).or_default();
+            held.wraps += 1;
+            held.steps += contact.steps;
+        }
     }
 
     fn finish(&self, part: Self::Part, block: &Size) -> Self::Counts {

@@ -14,7 +14,6 @@ use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
 use super::traced::{Size, Traced};
-use crate::rope::Lasting;
 use crate::study::estimate::Estimate;
 use crate::study::plan_error::PlanError;
 
@@ -90,7 +89,7 @@ pub(crate) struct Cells {
     /// None if there is no map.
     grid: Option<Grid>,
     /// After how many steps the map looks again.
-    every: u64,
+    every: usize,
     /// Lengths are summed in whole numbers of this.
     unit: f64,
 }
@@ -110,31 +109,29 @@ impl Tally for Cells {
     fn new(options: &TallyPlan, setting: &Setting) -> Result<Self, PlanError> {
         Ok(Cells {
             grid: (options.map > 0).then(|| Grid::new(setting.low, setting.high, options.map)),
-            every: u64::from(options.map_every.max(1)),
+            every: options.map_every.max(1) as usize,
             unit: setting.unit(),
         })
     }
 
     fn add(&self, part: &mut Self::Part, traced: &Traced<'_>) {
         let Some(grid) = &self.grid else { return };
-        traced.spans(|lasting| match lasting {
-            Lasting::Rope(rope, steps) => {
-                let first = steps.start.next_multiple_of(self.every);
-                for step in (first..steps.end).step_by(self.every as usize) {
-                    let end = traced.ends[step as usize];
-                    if let Some(cell) = grid.of(end) {
-                        let seen = part.entry(cell).or_default();
-                        seen.visits += 1;
-                        seen.lengths += (rope.length(end) / self.unit + 0.5) as u64;
-                    }
+        for span in &traced.lasting.spans {
+            let first = span.steps.start.next_multiple_of(self.every);
+            for step in (first..span.steps.end).step_by(self.every) {
+                let end = traced.ends[step];
+                if let Some(cell) = grid.of(end) {
+                    let seen = part.entry(cell).or_default();
+                    seen.visits += 1;
+                    seen.lengths += (span.leg.length(end) / self.unit + 0.5) as u64;
                 }
             }
-            Lasting::Contact { vertex, steps } => {
-                if let Some(cell) = grid.of(traced.model.vertices()[vertex as usize]) {
-                    part.entry(cell).or_default().contacts += steps;
-                }
+        }
+        for contact in &traced.lasting.held {
+            if let Some(cell) = grid.of(traced.model.vertices()[contact.vertex as usize]) {
+                part.entry(cell).or_default().contacts += contact.steps;
             }
-        });
+        }
     }
 
     fn finish(&self, part: Self::Part, block: &Size) -> Self::Counts {

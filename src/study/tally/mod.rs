@@ -39,4 +39,3 @@ pub(super) use setting::Setting;
 pub use survival::{Survival, SurvivalPoint};
 pub(super) use table::table;
 pub(super) use tally::Tally;
-pub(super) use traced::Traced;

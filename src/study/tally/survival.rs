@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +12,6 @@ use super::tally::Tally;
 use super::totals::Totals;
 use super::traced::{Size, Traced};
 use crate::geometry::number;
-use crate::rope::Lasting;
 use crate::study::estimate::Estimate;
 use crate::study::plan_error::PlanError;
 
@@ -59,23 +59,23 @@ impl Tally for Limits {
         part.resize_with(part.len().max(all), BTreeMap::new);
         // The limits that are exceeded at some time, and the first of them that was not yet.
         let (exceeded, mut next) = (&self.limits[..all], 0);
-        if exceeded.is_empty() {
-            return;
-        }
-        traced.spans(|lasting| {
-            let Lasting::Rope(rope, steps) = lasting else { return };
-            for step in steps {
-                if next == exceeded.len() {
-                    return;
-                }
-                let length = rope.length(traced.ends[step as usize]);
+        for span in &traced.lasting.spans {
+            let (pivot, mut step) = (span.leg.pivot(), span.steps.start);
+            while let Some(&limit) = exceeded.get(next) {
+                // Most steps end so near that no length needs to be computed.
+                let near = span.leg.surely_within(limit);
+                let is_far = |end: &DVec2| pivot.distance_squared(*end) > near;
+                let Some(far) = traced.ends[step..span.steps.end].iter().position(is_far) else { break };
+                step += far;
+                let length = span.leg.length(traced.ends[step]);
                 while next < exceeded.len() && length > exceeded[next] {
-                    let gone = self.times.partition_point(|&time| time < step) as u64;
+                    let gone = self.times.partition_point(|&time| time < step as u64) as u64;
                     *part[next].entry(gone).or_default() += 1;
                     next += 1;
                 }
+                step += 1;
             }
-        });
+        }
     }
 
     fn finish(&self, part: Self::Part, _: &Size) -> Self::Counts {
@@ -125,4 +125,50 @@ pub struct SurvivalPoint {
     pub step: u64,
     /// The share.
     pub share: Estimate,
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::engine::{Engine, Job, Reference};
+    use crate::example::{Walker, floor_plan, walks};
+    use crate::rope::replay;
+    use crate::scene::Model;
+    use crate::trace::settle;
+
+    #[test]
+    fn limits_are_exceeded_where_steps_say_so_one_by_one() {
+        let model = Arc::new(Model::new(floor_plan(), None).unwrap());
+        let traces: Vec<_> = walks(&model, Walker { step: 1.0, steps: 200, seed: 7 }, 24)
+            .into_iter()
+            .map(|trace| settle(&model, &trace))
+            .collect();
+        let records = Reference::new(model.clone()).evaluate(&traces, &Job::new()).unwrap();
+        // Also limits that some rope is as long as, to the last bit.
+        let mut limits: Vec<f64> = (0..40).map(|i| 0.5 * f64::from(i)).collect();
+        limits.extend(records.iter().flat_map(|record| [record.max_length, record.length]));
+        let options = TallyPlan { limits, ..TallyPlan::default() };
+        let setting = Setting::new(&options, vec![model.clone()], model.bounds(), Some(200));
+        let tally = Limits::new(&options, &setting).unwrap();
+        let mut seen = 0;
+        for (trace, record) in traces.iter().zip(&records) {
+            let traced = Traced::new(&setting, trace, record);
+            let mut part = Vec::new();
+            tally.add(&mut part, &traced);
+            let mut expected: Vec<BTreeMap<u64, u64>> = vec![BTreeMap::new(); part.len()];
+            let mut next = 0;
+            replay(model.anchor(), model.vertices(), traced.ends.len(), &record.events, |step, rope| {
+                while next < tally.limits.len() && rope.length(traced.ends[step]) > tally.limits[next] {
+                    let gone = tally.times.iter().filter(|&&time| time < step as u64).count();
+                    expected[next].insert(gone as u64, 1);
+                    next += 1;
+                }
+            });
+            assert_eq!(part, expected);
+            seen += next;
+        }
+        assert!(seen > 200, "{seen}");
+    }
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use glam::DVec2;
 
 use super::setting::Setting;
-use crate::rope::{Lasting, TraceRecord, spans};
+use crate::rope::{Lasting, TraceRecord, lasting};
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
@@ -18,17 +18,17 @@ pub(crate) struct Traced<'a> {
     pub anchor: usize,
     /// Where the free end is after each step.
     pub ends: Cow<'a, [DVec2]>,
+    /// The rope between events, and its contacts.
+    pub lasting: Lasting,
 }
 
 impl<'a> Traced<'a> {
+    /// O(events), and O(steps) if points were added to the trace.
     pub(crate) fn new(setting: &'a Setting, trace: &'a SettledTrace, record: &'a TraceRecord) -> Self {
         let anchor = setting.anchor(record.trace);
-        Traced { trace, record, model: &setting.models[anchor], anchor, ends: trace.ends() }
-    }
-
-    /// Calls `each` with what lasts over some steps: the rope between events, and its contacts. O(events).
-    pub(super) fn spans(&self, each: impl FnMut(Lasting<'_>)) {
-        spans(self.model.anchor(), self.model.vertices(), self.record.steps, &self.record.events, each);
+        let model = &setting.models[anchor];
+        let lasting = lasting(model.anchor(), model.vertices(), record.steps, &record.events);
+        Traced { trace, record, model, anchor, ends: trace.ends(), lasting }
     }
 }
 
