@@ -1,4 +1,4 @@
-//! The engine of the product, in two precisions: a compute shader [finds](certified) candidates among which the CPU
+//! The engines on a device. That of the product, in two precisions: a compute shader [finds](certified) candidates among which the CPU
 //! decides exactly, or [decides](fast) alone. In both, traces go round after round between device and CPU.
 
 mod certified;
@@ -7,6 +7,7 @@ mod fast;
 mod finding;
 mod rounds;
 
+use self::certified::RAYS;
 use self::rounds::NAME;
 use super::table::Open;
 use super::{EngineKind, Precision, Promise};
@@ -29,4 +30,14 @@ pub static GPU: EngineKind = EngineKind {
             (Precision::Fast, true) => Box::new(FastGpu::new(device, model)?.window(options.window).keep_all()),
         })
     }),
+};
+
+/// The note's method as it is written, for many ropes at once: n + 1 tests a step.
+pub static GPU_RAYS: EngineKind = EngineKind {
+    name: RAYS,
+    about: "A compute shader tries every wall end in every step, the CPU pushes and pops: for measurements of throughput",
+    precisions: &[Precision::Certified],
+    asks: false,
+    promise: Promise::Events,
+    open: Open::Device(|device, model, _| Ok(Box::new(Gpu::rays(device, model)?))),
 };

@@ -31,8 +31,6 @@ pub struct Gear {
 enum Shape {
     /// As the table has it, in this precision, with the widest window of the gear.
     Usual(Precision),
-    /// As the table has it, with one test a vertex and step.
-    Plain,
     /// The funnel that knows the rope at the end only.
     FinalOnly,
     /// The note with its remedy for walls on one line.
@@ -47,10 +45,10 @@ const fn usual(engine: &'static EngineKind, variant: &'static str) -> Contender 
 pub(in crate::lab) const GPU: Contender = usual(&engine::GPU, "windows");
 
 /// The same on threads.
-pub(in crate::lab) const CPU: Contender = usual(&engine::CPU, "windows");
+pub(in crate::lab) const CPU: Contender = usual(&engine::CPU, "sectors, windows");
 
-/// The shape of the note's method: one test a vertex and step.
-const GPU_ALL: Contender = Contender { engine: &engine::GPU, variant: "window 1, all vertices", shape: Shape::Plain };
+/// The note's method as it is written: one test a vertex and step.
+const GPU_RAYS: Contender = usual(&engine::GPU_RAYS, "all vertices");
 
 /// The product in a hurry.
 pub(in crate::lab) const FAST: Contender =
@@ -74,7 +72,7 @@ pub(in crate::lab) const NOTE_FURTHEST: Contender =
 pub(in crate::lab) const REFERENCE: Contender = usual(&engine::REFERENCE, "one by one");
 
 /// All contenders of a bench, in the order of the report. The baseline is one of them.
-pub const CONTENDERS: [Contender; 8] = [GPU, CPU, GPU_ALL, FAST, FUNNEL, FUNNEL_FINAL, NOTE, REFERENCE];
+pub const CONTENDERS: [Contender; 8] = [GPU, CPU, GPU_RAYS, FAST, FUNNEL, FUNNEL_FINAL, NOTE, REFERENCE];
 
 impl Contender {
     /// What all others are compared with.
@@ -95,7 +93,7 @@ impl Contender {
 
     /// Whether the widest window changes what it does.
     pub fn is_windowed(&self) -> bool {
-        self.engine.asks && self.shape != Shape::Plain
+        self.engine.asks
     }
 
     /// The most legs that one of its queries covers if the setting allows `legs`; `None` if that changes nothing.
@@ -137,7 +135,6 @@ impl Contender {
     pub(in crate::lab) fn open(&self, model: Arc<Model>, gear: &Gear) -> Result<Option<Box<dyn Engine>>, EngineError> {
         let options = match self.shape {
             Shape::Usual(precision) => Options { precision, window: gear.window, keep_all: false },
-            Shape::Plain => Options { window: 1, keep_all: true, ..Options::default() },
             Shape::FinalOnly => return Ok(Some(Box::new(Funnel::new(model).final_only()))),
             Shape::Furthest => return Ok(Some(Box::new(Note::new(model).furthest()))),
         };

@@ -25,8 +25,8 @@ fn all_engines_stand_side_by_side() {
     let names: Vec<_> = rows.iter().map(|r| (r["engine"].as_str().unwrap(), r["variant"].as_str().unwrap())).collect();
     let expected = [
         ("gpu", "windows"),
-        ("cpu", "windows"),
-        ("gpu", "window 1, all vertices"),
+        ("cpu", "sectors, windows"),
+        ("gpu-rays", "all vertices"),
         ("gpu", "fast, windows"),
         ("funnel", "every step"),
         ("funnel", "final rope only"),
@@ -40,7 +40,7 @@ fn all_engines_stand_side_by_side() {
         }
         assert_eq!(row["batch"], 6, "{row}");
         match (row["engine"].as_str(), row["variant"].as_str()) {
-            (Some("gpu"), Some("window 1, all vertices")) => assert_eq!(row["remaining"], 80, "{row}"),
+            (Some("gpu-rays"), _) => assert_eq!(row["remaining"], 80, "{row}"),
             (Some("gpu" | "cpu"), _) => assert!((1..=80).contains(&row["remaining"].as_u64().unwrap()), "{row}"),
             _ => assert!(row["remaining"].is_null(), "{row}"),
         }
