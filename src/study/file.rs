@@ -192,10 +192,10 @@ mod tests {
     #[test]
     fn programs_can_tell_faults_apart() {
         let line = |key: &str| EXAMPLE.lines().position(|line| line.trim_start().starts_with(key)).unwrap() + 1;
-        let wrong = Plan::parse(&EXAMPLE.replacen("traces = 10_000", "traces = 10_000\nstride = 0", 1)).unwrap_err();
-        assert_eq!((wrong.key.as_deref(), wrong.line), (Some("run.stride"), Some(line("traces") + 1)));
+        let wrong = Plan::parse(&EXAMPLE.replacen("stride = 1", "stride = 0", 1)).unwrap_err();
+        assert_eq!((wrong.key.as_deref(), wrong.line), (Some("run.stride"), Some(line("stride"))));
         assert!(matches!(&wrong.fault, PlanFault::Value(what) if what == "must be at least 1, which uses every point"));
-        assert_eq!(wrong.what(), format!("line {}: run.stride: {}", line("traces") + 1, wrong.fault));
+        assert_eq!(wrong.what(), format!("line {}: run.stride: {}", line("stride"), wrong.fault));
 
         let form = Plan::parse(&EXAMPLE.replacen("built_in", "anchor = 3\nbuilt_in", 1)).unwrap_err();
         assert_eq!(form.key.as_deref(), Some("scene.anchor"));
