@@ -15,8 +15,8 @@
 //!
 //! Around them: [`example`] has scenes and traces without files, and [`queries`] those of path planners' benchmarks;
 //! [`simplify`] leaves wall ends out of a scene for speed; a [`study`] draws very many traces and says what their ropes
-//! are like; [`lab`] measures engines against each other; a [`picture`] shows ropes and studies; [`escape`] makes
-//! text from files fit for terminals.
+//! are like; [`lab`] measures engines against each other; a [`picture`] shows ropes and studies; [`words`] are numbers
+//! as people read them; [`escape`] makes text from files fit for terminals.
 //!
 //! ```
 //! use std::sync::Arc;

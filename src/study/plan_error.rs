@@ -20,7 +20,7 @@ pub struct PlanError {
     pub key: Option<String>,
     /// What is wrong there.
     #[source]
-    pub fault: PlanFault,
+    pub fault: Box<PlanFault>,
 }
 
 /// What is wrong with a study, or with a key of its file.
@@ -74,7 +74,7 @@ impl PlanError {
     /// The message without the file's name: the line, the key, and what is wrong.
     pub fn what(&self) -> String {
         let line = self.line.map_or(String::new(), |line| format!("line {line}: "));
-        let joint = if matches!(self.fault, PlanFault::AnchorForm) { " " } else { ": " };
+        let joint = if matches!(*self.fault, PlanFault::AnchorForm) { " " } else { ": " };
         let key = self.key.as_ref().map_or(String::new(), |key| format!("{key}{joint}"));
         format!("{line}{key}{}", self.fault)
     }
@@ -82,6 +82,6 @@ impl PlanError {
 
 impl<F: Into<PlanFault>> From<F> for PlanError {
     fn from(fault: F) -> Self {
-        PlanError { path: None, line: None, key: None, fault: fault.into() }
+        PlanError { path: None, line: None, key: None, fault: Box::new(fault.into()) }
     }
 }
