@@ -62,8 +62,8 @@ pub struct State {
     pub(super) shard: Shard,
     /// How many of the shard's blocks are done: the first ones.
     pub(super) done: u64,
-    /// What was counted of the block after those, of which only some traces are evaluated; of one that has ended, of the
-    /// last of those if that is smaller than others: the study may be given more traces.
+    /// What was counted of the block after those, of which only some traces are evaluated; of one that has ended, of
+    /// the last of those if that is smaller than others: the study may be given more traces.
     pub(super) open: Option<Block>,
     pub(super) stopped: Stopped,
     /// How long that took, in seconds.
@@ -178,6 +178,11 @@ impl State {
         self.blocks.keys().copied()
     }
 
+    /// The identity of its study.
+    pub fn identity(&self) -> &str {
+        &self.identity
+    }
+
     /// Which part of the study it is.
     pub fn shard(&self) -> Shard {
         self.shard
@@ -256,7 +261,8 @@ impl State {
             && self.open.as_ref().is_none_or(|open| is_open || is_short(open))
     }
 
-    /// Reads the state of the same study with fewer traces, `traces` of them, and has it go on: what is done stays done.
+    /// Reads the state of the same study with fewer traces, `traces` of them, and has it go on: what is done stays
+    /// done.
     ///
     /// # Errors
     ///
@@ -283,8 +289,12 @@ impl State {
         Ok(state)
     }
 
-    /// Reads a state of whatever study and checks that it is whole.
-    fn read(path: &Path) -> Result<Self, StateError> {
+    /// Reads a state of whatever study and checks that it is as it was written.
+    ///
+    /// # Errors
+    ///
+    /// As [`load`](Self::load), but for those about the study.
+    pub fn read(path: &Path) -> Result<Self, StateError> {
         let fault = |what: &str| StateError { path: path.to_owned(), what: what.to_owned(), is_unread: false };
         let bytes = fs::read(path).map_err(|e| StateError { is_unread: true, ..fault(&e.to_string()) })?;
         let Some(rest) = bytes.strip_prefix(FIRST_LINE.as_slice()) else {

@@ -2,16 +2,17 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
 
 use anyhow::anyhow;
-use tautline::engine::{Engine, Job};
+use tautline::engine::Job;
 use tautline::session::{Computed, Folder, Saved, Session, answered};
-use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, State, Stopped, Study, read_blocks, run as go};
+use tautline::study::{EXAMPLE, Plan, PlanError, Shard, Stopped, Study, read_blocks};
 
 use super::answer::{conclude, duration, standing, tell as tell_answer};
 use super::base::{BaseArgs, WaitArgs, tell};
+use super::engines::Engines;
+use super::estimate::measure;
 use super::stop::StopArgs;
 use crate::cli::engine::{EngineArgs, of_studies};
 use crate::cli::failure::Failure;
@@ -19,7 +20,6 @@ use crate::cli::input::{note, warn};
 use crate::cli::interrupt::{Guard, Last};
 use crate::cli::print;
 use crate::cli::progress::{Progress, with_progress};
-use crate::cli::summary::precision;
 use crate::cli::trade::TradeArgs;
 use crate::cli::words::plainly;
 
@@ -118,7 +118,8 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     }
     if shard != Shard::WHOLE && plan.until.relative_error.is_some() && plan.outputs.traces {
         return Err(Failure::input(anyhow!(
-            "--shard: which rows there are is known only once all shards are merged; leave out outputs.traces or [until]"
+            "--shard: which rows there are is known only once all shards are merged; leave out outputs.traces, or \
+             [until]"
         )));
     }
     let located = |e: PlanError| match &args.file {
@@ -240,61 +241,21 @@ fn stopped(session: &Session) -> Failure {
     Failure::checkpoint(anyhow!("stopped; {what} with `tautline study resume {shown}`"))
 }
 
-/// The engines, one for each anchor, and in words what they run on.
-struct Engines {
-    engines: Vec<Box<dyn Engine>>,
-    on: String,
-}
-
-impl Engines {
-    /// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on
-    /// purpose, and `funnel` knows no contacts passed straight.
-    fn open(args: &EngineArgs, study: &Study) -> Result<Self, Failure> {
-        let mut all = Engines { engines: Vec::new(), on: String::new() };
-        for model in study.models() {
-            let opened = args.open_for(study.plan().run.precision, model)?;
-            if !opened.kind.counts_events() {
-                return Err(Failure::input(anyhow!(
-                    "--engine: {} does not count the same events as the other engines; give one of those for a study",
-                    opened.kind.name
-                )));
-            }
-            all.engines.push(opened.engine);
-            all.on = opened.on.to_string();
-        }
-        Ok(all)
-    }
-}
-
 /// Does the first blocks, to say what all of them would cost.
 fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
-    let plan = study.plan();
-    let Engines { mut engines, on } = Engines::open(&args.engine, study)?;
-    let (name, precision) = (engines[0].name(), precision(&*engines[0]));
-    let state = Mutex::new(State::new(study, args.part()));
-    let clock = Instant::now();
-    let mut first = None;
-    let outcome = go(study, &mut engines, &state, &Job::new(), |_, _, traces| {
-        first = Some((traces, clock.elapsed()));
-        Err(())
-    });
-    match outcome {
-        Ok(_) | Err(RunError::Caller(())) => {}
-        Err(RunError::Engine(error)) => return Err(error.into()),
-        Err(RunError::Plan(error)) => return Err(error.into()),
-    }
+    let (plan, part) = (study.plan(), args.part());
+    let measured = measure(study, &args.engine, part)?;
     let mut text = format!(
-        "the study is sound: {} in {}, {}, anchors: {}, engine {name} ({precision}) on {on}\n",
+        "the study is sound: {} in {}, {}, anchors: {}, {}\n",
         plainly(plan.run.count(), "trace", "traces"),
         plainly(plan.blocks(), "block", "blocks"),
         plainly(study.models()[0].scene().walls().len() as u64, "wall", "walls"),
         study.models().len(),
+        measured.engine,
     );
-    if let Some((traces, took)) = first.filter(|&(traces, _)| traces > 0) {
-        let share = study.places(args.part()) as f64 / traces as f64;
-        let all = Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX);
+    if let (Some(all), Some((traces, _))) = (measured.all(study, part), measured.first) {
         text += &format!("about {}, going by the first {traces} of the traces\n", duration(all));
-        if let Some(steps) = standing(&state.lock().unwrap_or_else(PoisonError::into_inner).summary(study)) {
+        if let Some(steps) = standing(&measured.summary) {
             text += &format!("{steps} in these\n");
         }
     }

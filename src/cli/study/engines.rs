@@ -1,0 +1,34 @@
+//! What computes a study's ropes.
+
+use anyhow::anyhow;
+use tautline::engine::Engine;
+use tautline::study::Study;
+
+use crate::cli::engine::EngineArgs;
+use crate::cli::failure::Failure;
+
+/// The engines, one for each anchor, and in words what they run on.
+pub(super) struct Engines {
+    pub(super) engines: Vec<Box<dyn Engine>>,
+    pub(super) on: String,
+}
+
+impl Engines {
+    /// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on
+    /// purpose, and `funnel` knows no contacts passed straight.
+    pub(super) fn open(args: &EngineArgs, study: &Study) -> Result<Self, Failure> {
+        let mut all = Engines { engines: Vec::new(), on: String::new() };
+        for model in study.models() {
+            let opened = args.open_for(study.plan().run.precision, model)?;
+            if !opened.kind.counts_events() {
+                return Err(Failure::input(anyhow!(
+                    "--engine: {} does not count the same events as the other engines; give one of those for a study",
+                    opened.kind.name
+                )));
+            }
+            all.engines.push(opened.engine);
+            all.on = opened.on.to_string();
+        }
+        Ok(all)
+    }
+}
