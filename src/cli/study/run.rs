@@ -175,15 +175,16 @@ fn nothing_new(is_repeated: bool, folder: Option<Arc<Folder>>) -> Last {
 }
 
 /// What is said of a study that is stopped before anything new is done.
-fn stopped_before(folder: &Path) -> Last {
+fn stopped_before(folder: &Path, give_up: impl FnOnce() + Send + 'static) -> Last {
     let shown = folder.display().to_string();
     Last::Save(Box::new(move || {
+        give_up();
         Failure::checkpoint(anyhow!("stopped before it went on: do so with `tautline study resume {shown}`"))
     }))
 }
 
 pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
-    let guard = Guard::new(stopped_before(&args.folder));
+    let guard = Guard::new(stopped_before(&args.folder, || ()));
     args.stop.set()?;
     let folder = Arc::new(args.wait.take(|| Folder::open(&args.folder))?);
     tell(&folder);
@@ -210,7 +211,10 @@ fn proceed(
     as_json: bool,
 ) -> Result<(), Failure> {
     // Once a state is there, the study can be gone on with, whenever it is stopped.
-    guard.change(stopped_before(session.folder().path()));
+    guard.change(stopped_before(session.folder().path(), {
+        let session = session.clone();
+        move || session.folder().give_up()
+    }));
     let left = session.prepare(Computed::by(&*engines[0], &on));
     tell(session.folder());
     let left = left?;

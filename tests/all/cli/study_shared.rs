@@ -78,10 +78,10 @@ fn what_schedulers_send_saves_and_stops() {
         send(signal, &child);
         let finished: Finished = child.wait_with_output().unwrap().into();
         finished.has_failed(4, signal, &["stopped"]);
-        assert!(leases(&folder, "a").is_empty());
     }
+    // One that is stopped as it takes its lease may leave it; on this machine nobody waits for that.
     folder.done("study run long.toml --out a --resume");
-    assert!(answer(&folder, "a") == answer(&folder, "truth"));
+    assert!(answer(&folder, "a") == answer(&folder, "truth") && leases(&folder, "a").is_empty());
     // What is to be ignored is.
     let mut shell = Command::new("sh");
     let program = assert_cmd::cargo::cargo_bin!("tautline");
