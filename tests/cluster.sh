@@ -21,6 +21,13 @@ say() { printf '%4d s  %s\n' "$SECONDS" "$*"; }
 tidy() {
     local file pid
     command -v scancel >/dev/null && [ -e "$work/slurm.conf" ] && timeout 10 scancel -u "$(id -un)" 2>/dev/null || true
+    # Those who watch over a job end with it; who is left, of a lost node, is known by the folder in which it works.
+    [ ! -e "$work/slurm.conf" ] || sleep 3
+    for file in /proc/[0-9]*/cwd; do
+        case $(readlink "$file" 2>/dev/null || true) in
+        "$work" | "$work"/*) pid=${file%/cwd} && pids+=("${pid#/proc/}") ;;
+        esac
+    done
     for file in "$work"/*.pid; do
         if [ -e "$file" ]; then pids+=("$(cat "$file")"); fi
     done
