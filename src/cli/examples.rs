@@ -60,17 +60,29 @@ pub(crate) const STUDY_RUN: &str = "Examples:
   tautline study run mine.toml --dry-run                     is it sound, and what would it cost?
   tautline study run mine.toml --count 1000000
   tautline study run mine.toml --stride 4 --simplify 0.5     faster, and nearly right
-  tautline study run mine.toml --shard 0/4 --out part0";
+  tautline study run mine.toml --shard 0/4 --out part0
+  tautline study run mine.toml --shard 3@1-6 --out part3 --resume --wait 2h --stop-after 55m     task 3 of 1 to 6";
 
 pub(crate) const STUDY_RESUME: &str = "Examples:
   tautline study resume mine-study";
 
 pub(crate) const STUDY_MERGE: &str = "Examples:
-  tautline study merge part0 part1 part2 part3 --out all";
+  tautline study merge part0 part1 part2 part3 --out all
+  tautline study merge part0 part1 --partial --out so-far";
 
 pub(crate) const STUDY_SHOW: &str = "Examples:
   tautline study show mine-study
   tautline study show mine-study --json";
+
+pub(crate) const STUDY_STATUS: &str = "Examples:
+  tautline study status mine-study
+  tautline study status part0 part1 part2 part3 --json";
+
+pub(crate) const STUDY_SCRIPT: &str = "Examples:
+  tautline study script slurm mine.toml
+  tautline study script slurm mine.toml --time 4h --parts 500 --out /scratch/mine
+  tautline study script dask mine.toml
+  tautline study script parallel mine.toml";
 
 pub(crate) const STUDY_REPLAY: &str = "Examples:
   tautline study replay mine-study --trace 7

@@ -22,8 +22,8 @@ fn last() -> MutexGuard<'static, Option<Last>> {
     LAST.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Listens for Ctrl-C from now on, and for requests to end: SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU. Files under way vanish at them. What the process was
-/// started to ignore, by nohup say, it goes on to ignore.
+/// Listens for Ctrl-C from now on, and for requests to end: SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU. Files under way
+/// vanish at them. What the process was started to ignore, by nohup say, it goes on to ignore.
 pub(crate) fn listen() -> Result<(), Failure> {
     heed()?;
     let ignored = ignored();

@@ -72,7 +72,8 @@ pub enum SessionError {
     },
     /// The folder holds what some parts of a study say.
     #[error(
-        "{} holds an answer of some parts of a study, which cannot be gone on with; run its parts, and merge them again",
+        "{} holds an answer of some parts of a study, which cannot be gone on with; run its parts, and merge them \
+         again",
         folder.display()
     )]
     Partial {

@@ -156,6 +156,12 @@ impl Folder {
         Ok(remembered)
     }
 
+    /// What the study is, and which part of it this is.
+    pub(super) fn plan(&self) -> Result<(Plan, Shard), SessionError> {
+        let Remembered { plan, shard, .. } = self.remembered()?;
+        Ok((plan, shard))
+    }
+
     /// Opens the study, and tells the folder from which its files are named: `base`, or else that as it began.
     pub(super) fn study(&self, base: Option<&Path>) -> Result<(Study, PathBuf), SessionError> {
         let Remembered { plan, base: began, .. } = self.remembered()?;
@@ -183,8 +189,8 @@ impl Folder {
         Ok(State::new(study, part))
     }
 
-    /// How far the folder is with this part of this study; `None` if it holds nothing of it, nor of anything else. Where
-    /// it `may_raise` the number of traces, the folder may hold the study with fewer.
+    /// How far the folder is with this part of this study; `None` if it holds nothing of it, nor of anything else.
+    /// Where it `may_raise` the number of traces, the folder may hold the study with fewer.
     pub(super) fn held(&self, study: &Study, part: Shard, may_raise: bool) -> Result<Option<State>, SessionError> {
         let another = |difference| SessionError::Another { folder: self.path.clone(), difference };
         let remembered = self.remembered().ok();

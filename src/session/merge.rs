@@ -13,9 +13,9 @@ use super::under_way::Session;
 use crate::output::{WriteError, merge_results};
 use crate::study::{Shard, State, StateError, Stopped, Study, merge as merge_states};
 
-/// Puts the parts in these folders together, which make up a study, in the folder `out`; or, if `is_partial`, those that
-/// are there, also while others write to them. `made` is told of that once the parts are known to be sound and it is
-/// there. Returns the study there, to be [concluded](Session::conclude) with the report. Holds one part at a time.
+/// Puts the parts in these folders together, which make up a study, in the folder `out`; or, if `is_partial`, those
+/// that are there, also while others write to them. `made` is told of that once the parts are known to be sound and it
+/// is there. Returns the study there, to be [concluded](Session::conclude) with the report. Holds one part at a time.
 ///
 /// # Errors
 ///

@@ -37,6 +37,7 @@ mod merge;
 mod names;
 mod report;
 mod rows;
+mod status;
 mod under_way;
 
 pub use conclude::{answered, is_answer, look};
@@ -45,4 +46,5 @@ pub use folder::Folder;
 pub use holder::Holder;
 pub use merge::merge;
 pub use report::{Computed, MergeCost, RunCost, RunReport, SpentSeconds, Tried};
+pub use status::{FolderStatus, Status, StudyStatus, status};
 pub use under_way::{Left, Saved, Session};

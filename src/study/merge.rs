@@ -34,7 +34,8 @@ pub fn merge<E: From<StateError>>(
     is_partial: bool,
     mut load: impl FnMut(&Path) -> Result<State, E>,
 ) -> Result<State, E> {
-    let mut whole = State::new(study, Shard::WHOLE);
+    let whole = State::new(study, Shard::WHOLE);
+    let (mut heap, mut seconds) = (Heap::default(), 0.0);
     let mut owners: BTreeMap<u64, usize> = BTreeMap::new();
     let mut longest: BTreeMap<u64, Moments> = BTreeMap::new();
     let mut parts: Vec<Part> = Vec::new();
@@ -64,10 +65,10 @@ pub fn merge<E: From<StateError>>(
         let (shard, done) = (state.shard, state.done);
         let is_unfinished = !state.is_partial && state.stopped == Stopped::Unfinished;
         parts.push(Part { path: path.clone(), shard, done, is_unfinished });
-        whole.seconds += state.seconds;
+        seconds += state.seconds;
         longest.extend(state.blocks.iter());
         if !has_rule {
-            take(&mut whole, state, study, u64::MAX, u64::MAX);
+            heap.add(taken(state, study, u64::MAX, u64::MAX));
         }
     }
     let all = study.plan().blocks();
@@ -84,9 +85,10 @@ pub fn merge<E: From<StateError>>(
     }
     if has_rule {
         for path in paths {
-            take(&mut whole, load(path)?, study, gap, end.unwrap_or(u64::MAX));
+            heap.add(taken(load(path)?, study, gap, end.unwrap_or(u64::MAX)));
         }
     }
+    let mut whole = heap.all(State { seconds, ..whole });
     whole.stopped = match end {
         Some(_) => Stopped::RelativeError,
         None if gap == all => Stopped::Complete,
@@ -97,26 +99,53 @@ pub fn merge<E: From<StateError>>(
     Ok(whole)
 }
 
-/// Adds the blocks of a part that come before `end`. What lies behind `gap` may yet have to be left out.
-fn take(whole: &mut State, mut part: State, study: &Study, gap: u64, end: u64) {
+/// What is put together so far, the larger of it first: each is at least twice as large as the next, so that what was
+/// counted is moved as often as there are doublings, however many parts there are.
+#[derive(Default)]
+struct Heap(Vec<State>);
+
+impl Heap {
+    fn add(&mut self, mut part: State) {
+        while let Some(last) = self.0.pop_if(|last| last.blocks.len() < 2 * part.blocks.len().max(1)) {
+            part = joined(last, part);
+        }
+        self.0.push(part);
+    }
+
+    /// All of it, with what `whole` says besides.
+    fn all(mut self, whole: State) -> State {
+        let mut all = self.0.pop().unwrap_or_else(|| whole.clone());
+        while let Some(last) = self.0.pop() {
+            all = joined(last, all);
+        }
+        let State { blocks, counts, apart, open, .. } = all;
+        State { blocks, counts, apart, open, ..whole }
+    }
+}
+
+/// What was counted in both.
+fn joined(mut one: State, mut other: State) -> State {
+    one.blocks.append(&mut other.blocks);
+    one.apart.append(&mut other.apart);
+    one.counts.merge_with(other.counts);
+    one.open = one.open.or(other.open);
+    one
+}
+
+/// The blocks of a part that come before `end`. What lies behind `gap` may yet have to be left out.
+fn taken(mut part: State, study: &Study, gap: u64, end: u64) -> State {
     part.blocks.retain(|&block, _| block < end);
-    let short = part.short().is_some();
-    if short {
-        // The study's last block.
-        let last = part.blocks.last_key_value().map(|(&block, _)| block);
-        if last.is_some_and(|last| last + 1 == study.plan().blocks()) {
-            whole.open = part.open;
-        }
-    }
-    for (block, counts) in part.apart {
+    // The study's last block, if it is short.
+    let has_last = part.blocks.last_key_value().is_some_and(|(block, _)| block + 1 == study.plan().blocks());
+    part.open = part.short().filter(|_| has_last).cloned();
+    for (block, counts) in std::mem::take(&mut part.apart) {
         if block < gap.min(end) {
-            whole.counts.merge_with(counts);
+            part.counts.merge_with(counts);
         } else if block < end {
-            whole.apart.insert(block, counts);
+            part.apart.insert(block, counts);
         }
     }
-    whole.counts.merge_with(part.counts);
-    whole.blocks.append(&mut part.blocks);
+    part
 }
 
 fn fault(path: &Path, fault: StateFault) -> StateError {

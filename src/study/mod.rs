@@ -29,6 +29,7 @@ pub use opened::Study;
 pub use plan::{AnchorPlan, OutputPlan, Plan, RunPlan, Sampled, ScenePlan, UntilPlan};
 pub use plan_error::{PlanError, PlanFault};
 pub use run::{RunError, Spent, run, run_again};
+pub(crate) use shard::as_ranges;
 pub use shard::{Shard, read_blocks};
 pub use state::{Check, Kept, Part, State, Stopped};
 pub use state_error::{StateError, StateFault};

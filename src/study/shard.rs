@@ -141,7 +141,7 @@ pub fn read_blocks(text: &str) -> Result<Range<u64>, String> {
 }
 
 /// Numbers, in their order, as ranges A..B that may be read again: the first of them, if there are very many.
-pub(super) fn as_ranges(numbers: impl IntoIterator<Item = u64>) -> String {
+pub(crate) fn as_ranges(numbers: impl IntoIterator<Item = u64>) -> String {
     const MOST: usize = 100;
     let mut ranges: Vec<Range<u64>> = Vec::new();
     for number in numbers {

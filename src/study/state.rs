@@ -63,8 +63,8 @@ pub struct State {
     pub(super) shard: Shard,
     /// How many of the shard's blocks are done: the first ones.
     pub(super) done: u64,
-    /// What was counted of the block after those, of which only some traces are evaluated; of one that has ended, of the
-    /// last of those if that is smaller than others: the study may be given more traces.
+    /// What was counted of the block after those, of which only some traces are evaluated; of one that has ended, of
+    /// the last of those if that is smaller than others: the study may be given more traces.
     pub(super) open: Option<Block>,
     pub(super) stopped: Stopped,
     /// How long that took, in seconds.
@@ -152,6 +152,11 @@ impl State {
         self.blocks.keys().copied()
     }
 
+    /// The identity of its study.
+    pub fn identity(&self) -> &str {
+        &self.identity
+    }
+
     /// Which part of the study it is.
     pub fn shard(&self) -> Shard {
         self.shard
@@ -206,7 +211,7 @@ impl State {
     ///
     /// A file that is no state, was written by another version, is damaged, or belongs to another study.
     pub fn load(path: &Path, study: &Study) -> Result<Self, StateError> {
-        State::read(path)
+        State::parse(path)
             .and_then(|state| match () {
                 () if state.identity != study.identity() => Err(StateFault::Foreign),
                 () if !state.is_sound(study) => Err(StateFault::Excess),
@@ -231,7 +236,8 @@ impl State {
             && self.open.as_ref().is_none_or(|open| is_open || is_short(open))
     }
 
-    /// Reads the state of the same study with fewer traces, `traces` of them, and has it go on: what is done stays done.
+    /// Reads the state of the same study with fewer traces, `traces` of them, and has it go on: what is done stays
+    /// done.
     ///
     /// # Errors
     ///
@@ -241,7 +247,7 @@ impl State {
     }
 
     fn raised(path: &Path, study: &Study, traces: u64) -> Result<Self, StateFault> {
-        let mut state = State::read(path)?;
+        let mut state = State::parse(path)?;
         if !study.identity_with(traces).is_ok_and(|before| before == state.identity) {
             return Err(StateFault::Foreign);
         }
@@ -260,8 +266,16 @@ impl State {
         Ok(state)
     }
 
-    /// Reads a state of whatever study and checks that it is whole.
-    fn read(path: &Path) -> Result<Self, StateFault> {
+    /// Reads a state of whatever study and checks that it is as it was written.
+    ///
+    /// # Errors
+    ///
+    /// As [`load`](Self::load), but for those about the study.
+    pub fn read(path: &Path) -> Result<Self, StateError> {
+        State::parse(path).map_err(|fault| StateError { path: path.to_owned(), fault })
+    }
+
+    fn parse(path: &Path) -> Result<Self, StateFault> {
         let bytes = fs::read(path)?;
         let Some(rest) = bytes.strip_prefix(FIRST_LINE.as_slice()) else {
             let is_kin = bytes.starts_with(MAGIC.as_bytes());

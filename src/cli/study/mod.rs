@@ -2,10 +2,14 @@
 
 mod answer;
 mod base;
+mod engines;
+mod estimate;
 mod merge;
 mod replay;
 mod run;
+mod script;
 mod show;
+mod status;
 mod stop;
 mod time;
 
@@ -40,6 +44,12 @@ enum Command {
     /// Show what a study says so far
     #[command(after_help = examples::STUDY_SHOW)]
     Show(show::Args),
+    /// How far studies are, over many folders at once: blocks, who writes there, time left
+    #[command(after_help = examples::STUDY_STATUS)]
+    Status(status::Args),
+    /// Write a script that has a scheduler run a study in parts and merge them
+    #[command(after_help = examples::STUDY_SCRIPT)]
+    Script(script::Args),
     /// Evaluate one of a study's traces again
     #[command(after_help = examples::STUDY_REPLAY)]
     Replay(replay::Args),
@@ -82,6 +92,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Command::Resume(args) => run::resume(args),
         Command::Merge(args) => merge::run(args),
         Command::Show(args) => show::run(args),
+        Command::Status(args) => status::run(args),
+        Command::Script(args) => script::run(args),
         Command::Replay(args) => replay::run(args),
         Command::Init(args) => init(args),
         Command::Schema(args) => print_json(&match args.of {

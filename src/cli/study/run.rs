@@ -2,16 +2,17 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
 
 use anyhow::anyhow;
-use tautline::engine::{Engine, Job};
+use tautline::engine::Job;
 use tautline::session::{Computed, Folder, Saved, Session, answered};
-use tautline::study::{EXAMPLE, Plan, PlanError, RunError, Shard, State, Stopped, Study, read_blocks, run as go};
+use tautline::study::{EXAMPLE, Plan, PlanError, Shard, Stopped, Study, read_blocks};
 
 use super::answer::{conclude, duration, standing, tell as tell_answer};
 use super::base::{BaseArgs, WaitArgs, tell};
+use super::engines::Engines;
+use super::estimate::measure;
 use super::stop::StopArgs;
 use crate::cli::engine::{EngineArgs, of_studies};
 use crate::cli::failure::Failure;
@@ -117,7 +118,8 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     }
     if shard != Shard::WHOLE && plan.until.relative_error.is_some() && plan.outputs.traces {
         return Err(Failure::input(anyhow!(
-            "--shard: which rows there are is known only once all shards are merged; leave out outputs.traces or [until]"
+            "--shard: which rows there are is known only once all shards are merged; leave out outputs.traces, or \
+             [until]"
         )));
     }
     let located = |e: PlanError| match &args.file {
@@ -173,15 +175,16 @@ fn nothing_new(is_repeated: bool, folder: Option<Arc<Folder>>) -> Last {
 }
 
 /// What is said of a study that is stopped before anything new is done.
-fn stopped_before(folder: &Path) -> Last {
+fn stopped_before(folder: &Path, give_up: impl FnOnce() + Send + 'static) -> Last {
     let shown = folder.display().to_string();
     Last::Save(Box::new(move || {
+        give_up();
         Failure::checkpoint(anyhow!("stopped before it went on: do so with `tautline study resume {shown}`"))
     }))
 }
 
 pub(super) fn resume(args: &ResumeArgs) -> Result<(), Failure> {
-    let guard = Guard::new(stopped_before(&args.folder));
+    let guard = Guard::new(stopped_before(&args.folder, || ()));
     args.stop.set()?;
     let folder = Arc::new(args.wait.take(|| Folder::open(&args.folder))?);
     tell(&folder);
@@ -208,7 +211,10 @@ fn proceed(
     as_json: bool,
 ) -> Result<(), Failure> {
     // Once a state is there, the study can be gone on with, whenever it is stopped.
-    guard.change(stopped_before(session.folder().path()));
+    guard.change(stopped_before(session.folder().path(), {
+        let session = session.clone();
+        move || session.folder().give_up()
+    }));
     let left = session.prepare(Computed::by(&*engines[0], &on));
     tell(session.folder());
     let left = left?;
@@ -239,59 +245,21 @@ fn stopped(session: &Session) -> Failure {
     Failure::checkpoint(anyhow!("stopped; {what} with `tautline study resume {shown}`"))
 }
 
-/// The engines, one for each anchor, and in words what they run on.
-struct Engines {
-    engines: Vec<Box<dyn Engine>>,
-    on: String,
-}
-
-impl Engines {
-    /// Two engines are refused, since an answer does not tell what computed it: the ropes of `note` are wrong on
-    /// purpose, and `funnel` knows no contacts passed straight.
-    fn open(args: &EngineArgs, study: &Study) -> Result<Self, Failure> {
-        let (first, others) = study.models().split_first().expect("a study has an anchor");
-        let opened = args.open_for(study.plan().run.precision, first)?;
-        if !opened.kind.counts_events() {
-            return Err(Failure::input(anyhow!(
-                "--engine: {} does not count the same events as the other engines; give one of those for a study",
-                opened.kind.name
-            )));
-        }
-        let on = opened.on.to_string();
-        let others: Vec<_> = others.iter().map(|model| opened.another(model.clone())).collect::<Result<_, _>>()?;
-        Ok(Engines { engines: std::iter::once(opened.engine).chain(others).collect(), on })
-    }
-}
-
 /// Does the first blocks, to say what all of them would cost.
 fn dry_run(study: &Study, args: &RunArgs) -> Result<(), Failure> {
-    let plan = study.plan();
-    let Engines { mut engines, on } = Engines::open(&args.engine, study)?;
-    let (name, precision) = (engines[0].name(), engines[0].precision_name());
-    let state = Mutex::new(State::new(study, args.part()));
-    let clock = Instant::now();
-    let mut first = None;
-    let outcome = go(study, &mut engines, &state, &Job::new(), |_, _, traces| {
-        first = Some((traces, clock.elapsed()));
-        Err(())
-    });
-    match outcome {
-        Ok(_) | Err(RunError::Caller(())) => {}
-        Err(RunError::Engine(error)) => return Err(error.into()),
-        Err(RunError::Plan(error)) => return Err(error.into()),
-    }
+    let (plan, part) = (study.plan(), args.part());
+    let measured = measure(study, &args.engine, part)?;
     let mut text = format!(
-        "the study is sound: {} in {}, {}, anchors: {}, engine {name} ({precision}) on {on}\n",
+        "the study is sound: {} in {}, {}, anchors: {}, {}\n",
         plainly(plan.run.count(), "trace", "traces"),
         plainly(plan.blocks(), "block", "blocks"),
         plainly(study.models()[0].scene().walls().len() as u64, "wall", "walls"),
         study.models().len(),
+        measured.engine,
     );
-    if let Some((traces, took)) = first.filter(|&(traces, _)| traces > 0) {
-        let share = study.places(args.part()) as f64 / traces as f64;
-        let all = Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX);
+    if let (Some(all), Some((traces, _))) = (measured.all(study, part), measured.first) {
         text += &format!("about {}, going by the first {traces} of the traces\n", duration(all));
-        if let Some(steps) = standing(&state.lock().unwrap_or_else(PoisonError::into_inner).summary(study)) {
+        if let Some(steps) = standing(&measured.summary) {
             text += &format!("{steps} in these\n");
         }
     }

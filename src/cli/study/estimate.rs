@@ -1,0 +1,50 @@
+//! What a study would cost, going by its first traces.
+
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use tautline::engine::Job;
+use tautline::study::{RunError, Shard, State, Study, Summary, run};
+
+use super::engines::Engines;
+use crate::cli::engine::EngineArgs;
+use crate::cli::failure::Failure;
+
+/// What the first traces came to.
+pub(super) struct Measured {
+    /// The engine, how much it can be trusted, and what it runs on.
+    pub(super) engine: String,
+    /// How many traces, and how long they took; `None` if there are none.
+    pub(super) first: Option<(usize, Duration)>,
+    /// What they say.
+    pub(super) summary: Summary,
+}
+
+impl Measured {
+    /// How long the whole part would take; `None` if it has no traces.
+    pub(super) fn all(&self, study: &Study, part: Shard) -> Option<Duration> {
+        let (traces, took) = self.first.filter(|&(traces, _)| traces > 0)?;
+        let share = study.places(part) as f64 / traces as f64;
+        Some(Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX))
+    }
+}
+
+/// Does the first traces of a part of a study.
+pub(super) fn measure(study: &Study, engine: &EngineArgs, part: Shard) -> Result<Measured, Failure> {
+    let Engines { mut engines, on } = Engines::open(engine, study)?;
+    let engine = format!("engine {} ({}) on {on}", engines[0].name(), engines[0].precision_name());
+    let state = Mutex::new(State::new(study, part));
+    let clock = Instant::now();
+    let mut first = None;
+    let outcome = run(study, &mut engines, &state, &Job::new(), |_, _, traces| {
+        first = Some((traces, clock.elapsed()));
+        Err(())
+    });
+    match outcome {
+        Ok(_) | Err(RunError::Caller(())) => {}
+        Err(RunError::Engine(error)) => return Err(error.into()),
+        Err(RunError::Plan(error)) => return Err(error.into()),
+    }
+    let summary = state.lock().unwrap_or_else(PoisonError::into_inner).summary(study);
+    Ok(Measured { engine, first, summary })
+}

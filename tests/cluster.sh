@@ -1,0 +1,216 @@
+#!/usr/bin/env bash
+# One study over many machines: a whole Slurm on this one, and Dask. Each case must give, byte for byte, what one run gives:
+# an array and its merge, a time limit and what is put back, a node that is killed, a worker that is killed, a stop over shards.
+#   tests/cluster.sh         TAUTLINE names another binary than the release build
+# Where Slurm or Dask cannot be had it says that those cases did not run, and ends with 0.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+if [ -z "${TAUTLINE:-}" ]; then
+    cargo build --release --quiet --bin tautline
+    TAUTLINE=target/release/tautline
+fi
+TAUTLINE=$(realpath "$TAUTLINE")
+export TAUTLINE NODEVICE_SELECT=1 RAYON_NUM_THREADS=1
+work=$(mktemp -d /tmp/cluster.XXXXXX)
+pids=()
+passed=0 failed=0 left_out=()
+say() { printf '%4d s  %s\n' "$SECONDS" "$*"; }
+
+# Everything that was started is ended by its own number.
+tidy() {
+    local file pid
+    command -v scancel >/dev/null && [ -e "$work/slurm.conf" ] && timeout 10 scancel -u "$(id -un)" 2>/dev/null || true
+    # Those who watch over a job end with it; who is left, of a lost node, is known by the folder in which it works.
+    [ ! -e "$work/slurm.conf" ] || sleep 3
+    for file in /proc/[0-9]*/cwd; do
+        case $(readlink "$file" 2>/dev/null || true) in
+        "$work" | "$work"/*) pid=${file%/cwd} && pids+=("${pid#/proc/}") ;;
+        esac
+    done
+    for file in "$work"/*.pid; do
+        if [ -e "$file" ]; then pids+=("$(cat "$file")"); fi
+    done
+    for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null || true; done
+    sleep 1
+    for pid in "${pids[@]}"; do kill -9 "$pid" 2>/dev/null || true; done
+    # What a killed node or worker left running holds the lease of its folder.
+    sed -n 's/.*"process":\([0-9]*\).*/\1/p' "$work"/*/part-*/lease.* 2>/dev/null | xargs -r kill -9 2>/dev/null || true
+    rm -rf "$work"
+}
+trap tidy EXIT
+trap "exit 1" INT TERM
+
+same() { # same CASE FOLDER TRUTH
+    if cmp -s "$work/$2/summary.json" "$work/$3/summary.json"; then
+        passed=$((passed + 1))
+        say "$1: the same bytes"
+    else
+        failed=$((failed + 1))
+        say "FAILED: $1"
+        tail -n 5 "$work/${2%/*}"/*.log 2>/dev/null || true
+    fi
+}
+wait_for() { # wait_for SECONDS COMMAND...
+    local end=$((SECONDS + $1))
+    shift
+    until "$@" >/dev/null 2>&1; do
+        [ "$SECONDS" -lt "$end" ] || return 1
+        sleep 0.2
+    done
+}
+
+root=()
+[ "$(id -u)" -eq 0 ] || root=(sudo -n)
+has_slurm() { command -v slurmctld && command -v slurmd && command -v sbatch && command -v munged; }
+if ! has_slurm >/dev/null && command -v apt-get >/dev/null; then
+    say "installing Slurm (slurmctld, slurmd, slurm-client, munge)"
+    "${root[@]}" apt-get update -qq >/dev/null 2>&1 || true
+    "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+        slurmctld slurmd slurm-client munge >/dev/null 2>&1 || true
+fi
+
+# The studies, and what one run says. One takes long enough that something can happen meanwhile.
+study() { # study NAME TRACES UNTIL
+    printf '%s\n' '[scene]' 'built_in = "rooms"' '[walk]' 'kind = "persistent"' 'step = 0.4' 'steps = 60' \
+        '[outputs]' 'pictures = false' '[run]' 'block = 500' "traces = $2" "${3:-}" >"$work/$1.toml"
+}
+study short 12000
+"$TAUTLINE" study run "$work/short.toml" --out "$work/short" --engine cpu >/dev/null 2>&1
+# So many traces as one part of three does in some 20 seconds.
+start=$(date +%s%N)
+"$TAUTLINE" study run "$work/short.toml" --seed 2 --out "$work/pace" --engine cpu >/dev/null 2>&1
+pace=$((12000 * 1000000000 / ($(date +%s%N) - start)))
+study long $((pace * 24 / 500 * 500))
+study rule 40000 $'[until]\nrelative_error = 0.01'
+say "one run, about $pace traces a second"
+(RAYON_NUM_THREADS=2 "$TAUTLINE" study run "$work/long.toml" --out "$work/long" --engine cpu >/dev/null 2>&1) &
+truth=$!
+"$TAUTLINE" study run "$work/rule.toml" --out "$work/rule" --engine cpu >/dev/null 2>&1
+wait "$truth"
+say "the truth is there"
+
+write() { # write SCHEDULER STUDY CASE PARTS [TIME]
+    "$TAUTLINE" study script "$1" "$work/$2.toml" --parts "$4" --out "$work/$3" --to "$work/$3.script" \
+        --time "${5:-60m}" --engine cpu >/dev/null 2>&1
+}
+
+begin_slurm() {
+    local host
+    host=$(hostname)
+    cat >"$work/slurm.conf" <<CONF
+ClusterName=tautline
+SlurmctldHost=$host(127.0.0.1)
+CommunicationParameters=NoInAddrAny,NoCtldInAddrAny
+SlurmctldPort=26817
+SlurmUser=$(id -un)
+SlurmdUser=$(id -un)
+AuthType=auth/munge
+AuthInfo=socket=$work/munge.socket,cred_expire=15
+CryptoType=crypto/munge
+StateSaveLocation=$work/state
+SlurmdSpoolDir=$work/spool.%n
+SlurmctldPidFile=$work/slurmctld.pid
+SlurmdPidFile=$work/slurmd.%n.pid
+SlurmctldLogFile=$work/slurmctld.daemon
+SlurmdLogFile=$work/slurmd.%n.daemon
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+MpiDefault=none
+ReturnToService=2
+SlurmdTimeout=20
+KillWait=10
+MinJobAge=600
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+JobRequeue=1
+SlurmdParameters=config_overrides
+NodeName=n[1-3] NodeHostname=$host NodeAddr=127.0.0.1 Port=[26821-26823] CPUs=3 RealMemory=4000 State=UNKNOWN
+PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+CONF
+    export SLURM_CONF=$work/slurm.conf
+    mkdir "$work/state"
+    chmod 755 "$work"
+    dd if=/dev/urandom of="$work/munge.key" bs=128 count=1 2>/dev/null
+    chmod 400 "$work/munge.key"
+    munged --key-file="$work/munge.key" --socket="$work/munge.socket" --pid-file="$work/munged.pid" \
+        --log-file="$work/munged.daemon" --seed-file="$work/munged.seed" --force || return 1
+    slurmctld -c || return 1
+    for n in n1 n2 n3; do slurmd -N "$n" || return 1; done
+    wait_for 10 bash -c 'sinfo -h -o %T | grep -qx idle'
+}
+over() { ! squeue -h -o %j | grep -q .; }
+
+if [ "$(id -u)" -eq 0 ] && has_slurm >/dev/null && begin_slurm >"$work/slurm.begin" 2>&1; then
+    say "Slurm $(sbatch --version | cut -d' ' -f2), three nodes"
+    write slurm short array 6
+    write slurm long limit 3
+    write slurm rule stop 8
+    # As if the job's end were nearer than a minute, which is the least that Slurm knows.
+    sed -i 's/--stop-before [0-9]*s/--stop-after 4s/' "$work/limit.script"
+    sed -i 's/--stop-after 60s/--stop-after 6s/' "$work/stop.script"
+    write slurm long lost 3
+    bash "$work/array.script" >/dev/null
+    wait_for 60 over || true
+    same "Slurm, an array and its merge" array/all short
+    bash "$work/lost.script" >/dev/null
+    bash "$work/limit.script" >/dev/null
+    bash "$work/stop.script" >/dev/null
+    wait_for 20 test -e "$work/lost/part-3/state.bin" || true
+    node=$(squeue -h -r -t R -n tautline -o '%N %o' | grep lost | head -n 1 | cut -d' ' -f1)
+    say "killing slurmd on $node"
+    kill -9 "$(cat "$work/slurmd.$node.pid")"
+    wait_for 45 bash -c "sinfo -h -N -o '%N %T' | grep -q '$node down'" || say "the node is not noticed as down"
+    slurmd -N "$node"
+    wait_for 150 over || { say "still in the queue:"; squeue; }
+    same "Slurm, a time limit and what is put back" limit/all long
+    grep -q 'are saved: go on' "$work"/limit/part-*.log || { failed=$((failed + 1)); say "FAILED: no part was stopped in time"; }
+    same "Slurm, a node that is killed" lost/all long
+    same "Slurm, a stop over shards" stop/all rule
+    "$TAUTLINE" study status "$work"/stop/part-*/ | sed -n 1p | cut -c1-70
+else
+    left_out+=("Slurm (its packages, or the right to start it, are missing: $(tail -n 1 "$work/slurm.begin" 2>/dev/null))")
+fi
+
+python=
+for candidate in python3 "$(command -v pyenv >/dev/null && pyenv which python3 2>/dev/null)"; do
+    [ -n "$candidate" ] && "$candidate" -c 'import distributed' 2>/dev/null && python=$candidate && break
+done
+if [ -z "$python" ] && python3 -m venv "$work/venv" 2>/dev/null && "$work/venv/bin/pip" install -q distributed 2>/dev/null; then
+    python=$work/venv/bin/python
+fi
+if [ -n "$python" ]; then
+    say "Dask $("$python" -c 'import distributed; print(distributed.__version__)')"
+    port=26831
+    "$python" -m distributed.cli.dask_scheduler --host 127.0.0.1 --port "$port" --no-dashboard >"$work/scheduler.daemon" 2>&1 &
+    pids+=($!)
+    for n in 1 2; do
+        (cd "$work" && exec "$python" -m distributed.cli.dask_worker "tcp://127.0.0.1:$port" --host 127.0.0.1 --no-nanny \
+            --no-dashboard --nthreads 2 --local-directory "$work" >"$work/worker$n.daemon" 2>&1) &
+        pids+=($!)
+        workers[n]=$!
+    done
+    write dask short tasks 4
+    mkdir -p "$work/tasks" "$work/killed" "$work/enough"
+    "$python" "$work/tasks.script" "tcp://127.0.0.1:$port" >"$work/tasks/tasks.log" 2>&1 || true
+    same "Dask, tasks and their merge" tasks/all short
+    write dask rule enough 8
+    "$python" "$work/enough.script" "tcp://127.0.0.1:$port" >"$work/enough/tasks.log" 2>&1 || true
+    same "Dask, a stop over shards" enough/all rule
+    write dask long killed 3
+    "$python" "$work/killed.script" "tcp://127.0.0.1:$port" >"$work/killed/tasks.log" 2>&1 &
+    client=$!
+    wait_for 30 test -e "$work/killed/part-0/state.bin" -a -e "$work/killed/part-1/state.bin" -a -e "$work/killed/part-2/state.bin" || true
+    say "killing a worker"
+    kill -9 "${workers[1]}"
+    wait "$client" || true
+    same "Dask, a worker that is killed" killed/all long
+else
+    left_out+=("Dask (it is neither installed nor to be had)")
+fi
+
+for what in "${left_out[@]}"; do say "DID NOT RUN: $what"; done
+say "$passed passed, $failed failed, ${#left_out[@]} schedulers left out"
+[ "$failed" -eq 0 ]
