@@ -92,3 +92,5 @@ say "a trace that plays in a browser"
 tests/animation.sh
 say "kills at random system calls, and a full disk"
 tests/faults.sh 12
+say "the Python package"
+tests/python.sh

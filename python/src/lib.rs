@@ -24,7 +24,7 @@ mod _tautrope {
     #[pymodule_export]
     use super::scene::{Scene, built_in_step, engines};
     #[pymodule_export]
-    use super::study::{Answer, Study, example_study};
+    use super::study::{Study, example_study, look_at_study, resume_study};
     #[pymodule_export]
     use super::table::Table;
     #[pymodule_export]

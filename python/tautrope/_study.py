@@ -158,7 +158,7 @@ class Study:
         """
         place = Path(folder)
         with _Said(progress) as said:
-            _warn(_core.Answer.resume(place, _base(place, base), engine, said))
+            _warn(_core.resume_study(place, _base(place, base), engine, said))
         return Answer(place)
 
     def __repr__(self) -> str:
@@ -180,7 +180,7 @@ class Answer:
         if file.exists():
             self._text = file.read_text()
         else:
-            self._text = _core.Answer.look(self.folder, _base(self.folder, None))
+            self._text = _core.look_at_study(self.folder, _base(self.folder, None))
         #: The summary, as ``summary.json`` has it; docs/studies.md explains all of it.
         self.summary: dict[str, Any] = json.loads(self._text)
 
