@@ -1,5 +1,5 @@
-//! The compiled part of the Python package `tautrope`: it takes arrays and tables in, has the library compute, and hands
-//! arrays and tables back. What users see is in `tautrope/`, in Python.
+//! The compiled part of the Python package `tautrope`: it takes arrays and tables in, has the library compute, and
+//! hands arrays and tables back. What users see is in `tautrope/`, in Python.
 
 mod arrow_in;
 mod compute;

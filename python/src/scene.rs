@@ -276,8 +276,8 @@ impl Scene {
         Ok(found.map(|v| (v.trace, v.step, v.wall, kind(v.kind), v.from.into(), v.to.into())).collect())
     }
 
-    /// The ropes of all traces. A trace that breaks the rules ends it, or is marked if `flag` says so. With `keep`, what
-    /// happened step by step is kept.
+    /// The ropes of all traces. A trace that breaks the rules ends it, or is marked if `flag` says so. With `keep`,
+    /// what happened step by step is kept.
     fn evaluate(
         &self,
         py: Python<'_>,

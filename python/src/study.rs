@@ -180,7 +180,7 @@ fn go_on(
 /// What is wrong with a study that is no file: without the line and column of a text that nobody has seen.
 fn plain(error: &serde_json::Error) -> String {
     let text = error.to_string();
-    text.split(" at line ").next().unwrap_or(&text).to_owned()
+    format!("the plan: {}", text.split(" at line ").next().unwrap_or(&text))
 }
 
 /// The study that is run when none is given, as TOML.
