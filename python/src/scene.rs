@@ -136,7 +136,7 @@ pub(crate) fn settle_all(model: &Model, traces: Vec<Trace>, work: &Work) -> Resu
 impl Scene {
     /// The scene in a file.
     #[staticmethod]
-    #[pyo3(signature = (path, layers, without_layers, flatten, unknown_blocked, ros, anchor))]
+    #[allow(clippy::too_many_arguments)] // what the package takes by their names
     fn read(
         py: Python<'_>,
         path: PathBuf,
