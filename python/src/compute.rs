@@ -52,8 +52,9 @@ impl Work {
     }
 }
 
-/// Does `work` without the interpreter's lock. A signal handler that raises, as that of Ctrl-C does, stops the work, and
-/// what it raises is returned once the work has ended. Now and then `watch` is told how far it is; it may raise too.
+/// Does `work` without the interpreter's lock. A signal handler that raises, as that of Ctrl-C does, stops the work,
+/// and what it raises is returned once the work has ended. Now and then `watch` is told how far it is; it may raise
+/// too.
 pub(crate) fn run<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&Work) -> Result<T, Fault> + Send,

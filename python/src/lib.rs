@@ -1,5 +1,5 @@
-//! The compiled part of the Python package `tautrope`: it takes arrays and tables in, has the library compute, and hands
-//! arrays and tables back. What users see is in `tautrope/`, in Python.
+//! The compiled part of the Python package `tautrope`: it takes arrays and tables in, has the library compute, and
+//! hands arrays and tables back. What users see is in `tautrope/`, in Python.
 
 mod arrow_in;
 mod compute;
@@ -24,7 +24,7 @@ mod _tautrope {
     #[pymodule_export]
     use super::scene::{Scene, built_in_step, engines};
     #[pymodule_export]
-    use super::study::{Answer, Study, example_study};
+    use super::study::{Study, example_study, look_at_study, resume_study};
     #[pymodule_export]
     use super::table::Table;
     #[pymodule_export]

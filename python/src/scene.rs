@@ -136,7 +136,7 @@ pub(crate) fn settle_all(model: &Model, traces: Vec<Trace>, work: &Work) -> Resu
 impl Scene {
     /// The scene in a file.
     #[staticmethod]
-    #[pyo3(signature = (path, layers, without_layers, flatten, unknown_blocked, ros, anchor))]
+    #[allow(clippy::too_many_arguments)] // what the package takes by their names
     fn read(
         py: Python<'_>,
         path: PathBuf,
@@ -276,8 +276,8 @@ impl Scene {
         Ok(found.map(|v| (v.trace, v.step, v.wall, kind(v.kind), v.from.into(), v.to.into())).collect())
     }
 
-    /// The ropes of all traces. A trace that breaks the rules ends it, or is marked if `flag` says so. With `keep`, what
-    /// happened step by step is kept.
+    /// The ropes of all traces. A trace that breaks the rules ends it, or is marked if `flag` says so. With `keep`,
+    /// what happened step by step is kept.
     fn evaluate(
         &self,
         py: Python<'_>,

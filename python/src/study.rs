@@ -107,34 +107,27 @@ impl Study {
     }
 }
 
-/// What a study's folder says so far: its summary as JSON.
-#[pyclass(module = "tautrope._tautrope", frozen)]
-pub(crate) struct Answer;
+/// Goes on with the study in a folder.
+#[pyfunction]
+pub(crate) fn resume_study(
+    py: Python<'_>,
+    folder: PathBuf,
+    base: Option<PathBuf>,
+    engine: Option<&str>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<String>> {
+    let begin = |_: &Work| Ok(Session::resume(Arc::new(Folder::open(&folder)?), base.as_deref())?);
+    go_on(py, begin, engine, progress)
+}
 
-#[pymethods]
-impl Answer {
-    /// Goes on with the study in a folder.
-    #[staticmethod]
-    fn resume(
-        py: Python<'_>,
-        folder: PathBuf,
-        base: Option<PathBuf>,
-        engine: Option<&str>,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Vec<String>> {
-        let begin = |_: &Work| Ok(Session::resume(Arc::new(Folder::open(&folder)?), base.as_deref())?);
-        go_on(py, begin, engine, progress)
-    }
-
-    /// The summary of what is done, as JSON. Whoever writes there is not disturbed.
-    #[staticmethod]
-    fn look(py: Python<'_>, folder: PathBuf, base: Option<PathBuf>) -> PyResult<String> {
-        let look = |_: &Work| {
-            let (study, state) = look(&folder, base.as_deref())?;
-            serde_json::to_string(&state.summary(&study)).map_err(|error| Fault::new("StudyError", error))
-        };
-        compute::run(py, look, |_, _| Ok(()))
-    }
+/// The summary of what is done of the study in a folder, as JSON. Whoever writes there is not disturbed.
+#[pyfunction]
+pub(crate) fn look_at_study(py: Python<'_>, folder: PathBuf, base: Option<PathBuf>) -> PyResult<String> {
+    let look = |_: &Work| {
+        let (study, state) = look(&folder, base.as_deref())?;
+        serde_json::to_string(&state.summary(&study)).map_err(|error| Fault::new("StudyError", error))
+    };
+    compute::run(py, look, |_, _| Ok(()))
 }
 
 /// Writes a scene's text, whole or not at all.
@@ -187,7 +180,7 @@ fn go_on(
 /// What is wrong with a study that is no file: without the line and column of a text that nobody has seen.
 fn plain(error: &serde_json::Error) -> String {
     let text = error.to_string();
-    text.split(" at line ").next().unwrap_or(&text).to_owned()
+    format!("the plan: {}", text.split(" at line ").next().unwrap_or(&text))
 }
 
 /// The study that is run when none is given, as TOML.

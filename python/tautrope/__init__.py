@@ -1,8 +1,8 @@
 """Taut ropes of dragged traces among walls.
 
-A rope is tied to an anchor and held at its free end. The free end is dragged along a trace through a plane full of walls.
-After every step, which wall ends does the taut rope bend round, and how long is it? This package answers that for
-thousands to millions of traces at once, and exactly.
+A rope is tied to an anchor and held at its free end. The free end is dragged along a trace through a plane full of
+walls. After every step, which wall ends does the taut rope bend round, and how long is it? This package answers that
+for thousands to millions of traces at once, and exactly.
 
 - `Scene` has the walls and the anchor: from a file, an array, or shapely's geometries.
 - `Scene.evaluate` gives the `Ropes` of your traces, as tables, arrays and lines.

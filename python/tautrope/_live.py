@@ -27,7 +27,8 @@ class Event(NamedTuple):
 class LiveRope:
     """A rope that follows its free end, one straight move at a time: for loops that cannot wait for the end of a trace.
 
-    It starts with its free end at the anchor. Events and ropes are those that `Scene.evaluate` gives for the same points.
+    It starts with its free end at the anchor. Events and ropes are those that `Scene.evaluate` gives for the same
+    points.
 
     >>> import tautrope
     >>> rope = tautrope.LiveRope(tautrope.Scene([[[-1, 0], [1, 0]]], anchor=(0, -1)))

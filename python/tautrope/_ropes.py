@@ -70,7 +70,8 @@ class Ropes:
 
     @cached_property
     def events(self) -> Table:
-        """One row for every wrap and unwrap, in order: ``trace``, ``step``, ``kind``, ``vertex``, ``x``, ``y``, ``side``."""
+        """One row for every wrap and unwrap, in order: ``trace``, ``step``, ``kind``, ``vertex``, ``x``, ``y``,
+        ``side``."""
         return Table(self._core.events())
 
     @property
@@ -139,8 +140,8 @@ class Ropes:
         return lines
 
     def rope(self, trace: int, step: int | None = None) -> np.ndarray[Any, np.dtype[np.float64]]:
-        """The taut rope of a trace after a step, at its end without one: the anchor, its turns and the free end, an array of
-        shape (turns + 2, 2)."""
+        """The taut rope of a trace after a step, at its end without one: the anchor, its turns and the free end, an
+        array of shape (turns + 2, 2)."""
         place = self._place(trace)
         if step is None:
             offsets, points = self._core.lines()
@@ -157,7 +158,8 @@ class Ropes:
     def write(
         self, results: str | os.PathLike[str] | None = None, events: str | os.PathLike[str] | None = None
     ) -> None:
-        """Writes one row a trace to ``results`` and one row an event to ``events``: ``.parquet``, ``.csv`` or ``.jsonl``.
+        """Writes one row a trace to ``results`` and one row an event to ``events``: ``.parquet``, ``.csv`` or
+        ``.jsonl``.
 
         The files are those of ``tautline eval --out --events``, to the byte.
         """

@@ -43,8 +43,8 @@ class Violation(NamedTuple):
 class Scene:
     """Walls in the plane, and the anchor at which ropes are tied.
 
-    Coordinates are planar, in your own unit. Walls may share ends, touch, cross and overlap. A scene keeps the engines that
-    have evaluated ropes in it, so that a second call does not pay again for what the first has found out.
+    Coordinates are planar, in your own unit. Walls may share ends, touch, cross and overlap. A scene keeps the engines
+    that have evaluated ropes in it, so that a second call does not pay again for what the first has found out.
 
     Args:
         walls: An array of shape (n, 2, 2) or (n, 4): the two ends of each wall. They are thin, free on both sides.
@@ -228,19 +228,19 @@ class Scene:
     ) -> Ropes:
         """The taut ropes of traces: the points through which the free end is dragged.
 
-        The first point of a trace must be visible from the anchor, and each next one from the one before. Ropes are exact
-        then. Other Python threads go on meanwhile, and Ctrl-C ends it.
+        The first point of a trace must be visible from the anchor, and each next one from the one before. Ropes are
+        exact then. Other Python threads go on meanwhile, and Ctrl-C ends it.
 
         Args:
-            traces: An array of shape (n, points, 2); a list of arrays of shape (points, 2), or of shapely's lines; a pair
-                ``(offsets, xy)``, where trace i is ``xy[offsets[i]:offsets[i + 1]]``; or a table of pandas, polars, pyarrow,
-                DuckDB, or a dict of arrays, with the columns ``trace``, ``x``, ``y``. Rows of one trace follow each other and
-                numbers of traces increase: sort by trace and step. A column ``step`` may not go back; without it rows that
-                are out of order cannot be told from a walk.
+            traces: An array of shape (n, points, 2); a list of arrays of shape (points, 2), or of shapely's lines; a
+                pair ``(offsets, xy)``, where trace i is ``xy[offsets[i]:offsets[i + 1]]``; or a table of pandas,
+                polars, pyarrow, DuckDB, or a dict of arrays, with the columns ``trace``, ``x``, ``y``. Rows of one
+                trace follow each other and numbers of traces increase: sort by trace and step. A column ``step`` may
+                not go back; without it rows that are out of order cannot be told from a walk.
             engine: ``cpu``, ``gpu``, ``reference``, ``funnel`` or ``note``; without it the one that suits the machine.
             precision: ``certified``, or ``fast`` for the engine gpu: f32 decides alone, and ropes can be wrong.
-            on_violation: ``error`` raises at the first trace that crosses a wall; ``flag`` marks such traces in the column
-                ``status``.
+            on_violation: ``error`` raises at the first trace that crosses a wall; ``flag`` marks such traces in the
+                column ``status``.
             events: Whether what happens step by step is kept. Without it there are results only, in less memory.
 
         Raises:
@@ -267,7 +267,8 @@ class Scene:
         Args:
             count: How many.
             steps: How many steps each has.
-            step: How long a step is, about; without it what suits a built-in scene, else a 200th of the scene's longer side.
+            step: How long a step is, about; without it what suits a built-in scene, else a 200th of the scene's longer
+                side.
             seed: Walk i of a seed is the same whatever else is drawn.
         """
         if step is None:

@@ -49,12 +49,23 @@ class Estimate(NamedTuple):
 class Study:
     """Very many random walks in a scene, and what their ropes are like on the whole.
 
+    A plan has these sections, of which only ``scene`` and ``walk`` are needed (docs/studies.md explains all keys):
+
+    - ``scene``: ``{"built_in": "rooms"}`` or ``{"file": "plan.svg"}``, with ``anchor`` if the file marks none
+    - ``walk``: ``{"kind": ..., "step": length of a step, "steps": how many}``. Kinds are ``uniform`` (any direction),
+      ``gaussian``, ``persistent`` (keeps its heading but for ``turn``), ``waypoints`` (drives from goal to goal), and
+      ``given`` (the traces of ``file``)
+    - ``run``: ``{"traces": how many, "seed": a number, ...}``
+    - ``tallies``: what is counted: ``limits`` of lengths, ``map`` (cells along the longer side), ``confidence``, ...
+    - ``until``: when to stop earlier: ``relative_error``, ``seconds``
+    - ``outputs``: what is written besides: ``traces`` (one row a trace), ``pictures``
+
     Args:
         plan: A study's file (``.toml``), or a dict with the same sections; see docs/studies.md for all keys. Without it
             only what the keywords say.
         base: The folder from which the plan's files are named, if it is no file: the current one without it.
-        sections: Sections of the plan: ``scene``, ``walk``, ``run``, ``tallies``, ``until``, ``outputs``. ``scene`` may be a
-            `Scene`, too.
+        sections: Sections of the plan: ``scene``, ``walk``, ``run``, ``tallies``, ``until``, ``outputs``. ``scene`` may
+            be a `Scene`, too, or the name of a built-in one.
 
     >>> import tautrope
     >>> scene = tautrope.Scene([[[-1, 0], [1, 0]], [[3, 3], [5, 1]]], anchor=(0, -1))
@@ -82,6 +93,8 @@ class Study:
             return
         whole = {**(plan or {}), **sections}
         folder = Path(base) if base is not None else Path.cwd()
+        if isinstance(whole.get("scene"), str):
+            whole["scene"] = {"built_in": whole["scene"]}
         if isinstance(whole.get("scene"), Scene):
             self._room = tempfile.TemporaryDirectory(prefix="tautrope-")
             folder = Path(self._room.name)
@@ -158,7 +171,7 @@ class Study:
         """
         place = Path(folder)
         with _Said(progress) as said:
-            _warn(_core.Answer.resume(place, _base(place, base), engine, said))
+            _warn(_core.resume_study(place, _base(place, base), engine, said))
         return Answer(place)
 
     def __repr__(self) -> str:
@@ -180,14 +193,14 @@ class Answer:
         if file.exists():
             self._text = file.read_text()
         else:
-            self._text = _core.Answer.look(self.folder, _base(self.folder, None))
+            self._text = _core.look_at_study(self.folder, _base(self.folder, None))
         #: The summary, as ``summary.json`` has it; docs/studies.md explains all of it.
         self.summary: dict[str, Any] = json.loads(self._text)
 
     @property
     def scalars(self) -> Any:
-        """The mean of each quantity with its standard error and interval, its deviation and extremes: a DataFrame of pandas,
-        by the quantity's name."""
+        """The mean of each quantity with its standard error and interval, its deviation and extremes: a DataFrame of
+        pandas, by the quantity's name."""
         rows = {
             s["name"]: {
                 "mean": s["mean"]["value"],
@@ -204,7 +217,8 @@ class Answer:
 
     @property
     def quantiles(self) -> Any:
-        """Below which value each share of the traces lies, with its interval: a DataFrame of pandas by name and share."""
+        """Below which value each share of the traces lies, with its interval: a DataFrame of pandas by name and
+        share."""
         rows = {
             (s["name"], q["share"]): {key: q["value"][key] for key in ("value", "low", "high")}
             for s in self.summary["scalars"]
@@ -229,7 +243,8 @@ class Answer:
     def difference(self, other: Answer, name: str = "max_length") -> Estimate:
         """By how much the mean of this answer is above that of another, with an interval.
 
-        It takes both for independent: give the studies different seeds. 0 outside of the interval means that they differ.
+        It takes both for independent: give the studies different seeds. 0 outside of the interval means that they
+        differ.
         """
         (a, a_low, a_high), (b, b_low, b_high) = self.mean(name), other.mean(name)
         confidences = {answer.summary["study"]["tallies"]["confidence"] for answer in (self, other)}
@@ -248,7 +263,8 @@ class Answer:
         return scalars[name]
 
     def histogram(self, name: str = "max_length") -> Any:
-        """How many traces lie in each bin, and which share of them: a DataFrame of pandas. Bins without traces are left out.
+        """How many traces lie in each bin, and which share of them: a DataFrame of pandas. Bins without traces are left
+        out.
 
         ``name`` is one of ``length``, ``max_length``, ``depth``, ``max_depth``, as far as the study counts them.
         """
@@ -302,9 +318,10 @@ class Answer:
     def map(self) -> Any:
         """The plane, cell by cell: a Dataset of xarray, or where that is not installed a dict of arrays.
 
-        Variables, each of shape (rows, columns): ``contacts``, with how many wall ends there the rope has a contact after a
-        step, on the mean; ``length``, how long the rope is on the mean while its free end is there; both with ``_low`` and
-        ``_high`` for the interval; ``visits``, how often a free end was seen there. ``x`` and ``y`` are the middles of the cells. Where nothing came there is NaN, or 0 visits.
+        Variables, each of shape (rows, columns): ``contacts``, with how many wall ends there the rope has a contact
+        after a step, on the mean; ``length``, how long the rope is on the mean while its free end is there; both with
+        ``_low`` and ``_high`` for the interval; ``visits``, how often a free end was seen there. ``x`` and ``y`` are
+        the middles of the cells. Where nothing came there is NaN, or 0 visits.
         """
         found = self.summary.get("map")
         if found is None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, final
 
 import numpy as np
 
@@ -12,12 +12,30 @@ _Wholes = np.ndarray[Any, np.dtype[np.uint64]]
 _At = tuple[float, float]
 _Progress = Callable[[int, int], Any]
 
+__all__ = [
+    "LiveRope",
+    "Ropes",
+    "Scene",
+    "Study",
+    "Table",
+    "Traces",
+    "__version__",
+    "built_in_step",
+    "engines",
+    "example_study",
+    "look_at_study",
+    "resume_study",
+]
+
 __version__: str
 
 def engines() -> list[tuple[str, str]]: ...
 def built_in_step(name: str) -> float: ...
 def example_study() -> str: ...
+def resume_study(folder: Path, base: Path | None, engine: str | None, progress: _Progress | None) -> list[str]: ...
+def look_at_study(folder: Path, base: Path | None) -> str: ...
 
+@final
 class Traces:
     @staticmethod
     def of_points(offsets: _Ints, xy: _Floats) -> Traces: ...
@@ -26,6 +44,7 @@ class Traces:
     @staticmethod
     def of_stream(capsule: Any) -> Traces: ...
 
+@final
 class Scene:
     @staticmethod
     def read(
@@ -62,6 +81,7 @@ class Scene:
     def check(self, traces: Traces) -> list[tuple[int, int, int, str, _At, _At]]: ...
     def evaluate(self, traces: Traces, engine: str | None, precision: str, flag: bool, keep: bool) -> Ropes: ...
 
+@final
 class Ropes:
     @property
     def engine(self) -> str: ...
@@ -78,6 +98,7 @@ class Ropes:
     @staticmethod
     def restored(scene: Scene, bytes: bytes) -> Ropes: ...
 
+@final
 class Table:
     @staticmethod
     def of_parquet(path: Path) -> Table: ...
@@ -90,8 +111,9 @@ class Table:
     def __arrow_c_stream__(self, requested_schema: Any = None) -> Any: ...
     def columns(self) -> dict[str, Any]: ...
 
+@final
 class LiveRope:
-    def __init__(self, scene: Scene) -> None: ...
+    def __new__(cls, scene: Scene) -> LiveRope: ...
     def advance(self, x: float, y: float) -> list[tuple[str, int, str]]: ...
     @property
     def free_end(self) -> _At: ...
@@ -104,6 +126,7 @@ class LiveRope:
     @property
     def contacts(self) -> list[int]: ...
 
+@final
 class Study:
     @staticmethod
     def of_file(path: Path) -> Study: ...
@@ -116,9 +139,3 @@ class Study:
     def run(
         self, out: Path, engine: str | None, progress: _Progress | None, scene: str | None
     ) -> list[str]: ...
-
-class Answer:
-    @staticmethod
-    def resume(folder: Path, base: Path | None, engine: str | None, progress: _Progress | None) -> list[str]: ...
-    @staticmethod
-    def look(folder: Path, base: Path | None) -> str: ...

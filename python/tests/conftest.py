@@ -57,7 +57,9 @@ def rooms_file(rooms: tautrope.Scene, tmp_path_factory: pytest.TempPathFactory) 
 
 
 @pytest.fixture(scope="session")
-def files(rooms_file: Path, program: Program, columns: dict[str, np.ndarray], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def files(
+    rooms_file: Path, program: Program, columns: dict[str, np.ndarray], tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """A folder with the walks in a file, and what the program makes of them."""
     import pandas
 

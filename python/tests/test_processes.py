@@ -157,6 +157,7 @@ def test_studies_in_forks_are_refused_rather_than_hanging(tmp_path: Path) -> Non
 
 
 def _study(out: Path) -> int:
-    plan = {"walk": {"kind": "uniform", "step": 0.3, "steps": 10}, "run": {"traces": 20}, "outputs": {"pictures": False}}
-    traces: int = Study(plan, scene={"built_in": "rooms"}).run(out, progress=False).summary["traces"]
+    walk, outputs = {"kind": "uniform", "step": 0.3, "steps": 10}, {"pictures": False}
+    study = Study(scene="rooms", walk=walk, run={"traces": 20}, outputs=outputs)
+    traces: int = study.run(out, progress=False).summary["traces"]
     return traces

@@ -19,7 +19,7 @@ def same(a: Ropes, b: Ropes) -> bool:
     def equal(x: Any, y: Any) -> bool:
         if isinstance(x, np.ndarray) and x.dtype == object:
             return len(x) == len(y) and all(equal(p, q) for p, q in zip(x, y, strict=True))
-        return np.array_equal(x, y, equal_nan=True) if isinstance(x, np.ndarray) and x.dtype.kind == "f" else np.all(x == y)
+        return np.array_equal(x, y, equal_nan=np.asarray(x).dtype.kind == "f")
 
     tables = [(a.results, b.results), (a.events, b.events)]
     return all(s.columns == t.columns and all(equal(s[name], t[name]) for name in s.columns) for s, t in tables)
@@ -111,7 +111,9 @@ def test_engines_agree(rooms: Scene, walks: np.ndarray, ropes: Ropes) -> None:
         rooms.evaluate(walks, engine="cpu", precision="fast")
 
 
-def test_a_trace_through_a_wall_is_refused_or_flagged(rooms: Scene, rooms_file: Path, program: Program, tmp_path: Path) -> None:
+def test_a_trace_through_a_wall_is_refused_or_flagged(
+    rooms: Scene, rooms_file: Path, program: Program, tmp_path: Path
+) -> None:
     x, y = rooms.anchor or (0, 0)
     traces = [[(x, y), (x + 0.1, y)], [(x, y), (x, y), (1000, 1000)]]
     with pytest.raises(ViolationError, match="flag") as caught:
@@ -129,7 +131,7 @@ def test_a_trace_through_a_wall_is_refused_or_flagged(rooms: Scene, rooms_file: 
 
 
 def test_ropes_step_by_step(ropes: Ropes, walks: np.ndarray) -> None:
-    """Lengths after each step have the greatest and the last length of the results, and are those of the ropes shown."""
+    """Lengths after each step have the greatest and the last length of the results, and are those of ropes shown."""
     assert ropes.lengths.shape == walks.shape[:2] and np.array_equal(ropes.points, walks)
     assert np.array_equal(ropes.lengths[:, -1], ropes["length"])
     assert np.array_equal(ropes.lengths.max(axis=1), ropes["max_length"])
@@ -159,7 +161,9 @@ def test_lines_of_shapely(ropes: Ropes) -> None:
     assert (frame.geometry == lines).all() and "max_length" in frame.columns
 
 
-def test_pictures_are_the_programs(ropes: Ropes, program: Program, rooms_file: Path, files: Path, tmp_path: Path) -> None:
+def test_pictures_are_the_programs(
+    ropes: Ropes, program: Program, rooms_file: Path, files: Path, tmp_path: Path
+) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
@@ -201,7 +205,7 @@ def test_labels_come_through() -> None:
     shapes = [shapely.box(-1, 0, 1, 1), shapely.box(3, 0, 4, 1)]
     scene = Scene.from_shapely(shapes, (0, -1), labels=["desk", None])
     ropes = scene.evaluate([[(0, -1), (2, -1), (2, 2), (0, 2)], [(0, -1), (5, -1), (5, 3), (2, 3)]])
-    assert [[*names] for names in ropes["labels"]] == [["desk", "desk"], ["desk", "desk"]] or None in ropes["labels"][1]
+    assert [[*names] for names in ropes["labels"]][0] == ["desk", "desk"]
     assert ropes.events["label"].tolist()[0] == "desk"
     assert ropes.to_arrow()["labels"].to_pylist()[0] == ["desk", "desk"]
 

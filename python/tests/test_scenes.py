@@ -108,10 +108,13 @@ def test_geometries_of_shapely_mean_what_a_file_of_them_means(tmp_path: Path) ->
 
 
 
-def test_traces_are_checked_as_the_program_does(program: Program, tmp_path: Path, rooms: Scene, rooms_file: Path) -> None:
+def test_traces_are_checked_as_the_program_does(
+    program: Program, tmp_path: Path, rooms: Scene, rooms_file: Path
+) -> None:
     x, y = rooms.anchor or (0, 0)
     (tmp_path / "t.csv").write_text(f"trace,x,y\n0,{x},{y}\n0,{x + 0.1},{y}\n3,{x},{y}\n3,1000,1000\n")
-    told = json.loads(program("check", "--scene", rooms_file, "--traces", tmp_path / "t.csv", "--on-violation", "flag", "--json"))
+    asked = "check", "--scene", rooms_file, "--traces", tmp_path / "t.csv", "--on-violation", "flag", "--json"
+    told = json.loads(program(*asked))
     (found,) = rooms.check({"trace": [0, 0, 3, 3], "x": [x, x + 0.1, x, 1000], "y": [y, y, y, 1000]})
     (expected,) = told["traces"]["violations"]
     assert (found.trace, found.step, found.wall, found.kind) == (3, 1, expected["wall"], expected["kind"])
