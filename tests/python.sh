@@ -32,15 +32,16 @@ say "packages"
 # shellcheck disable=SC2086 # a list of names
 "${pip[@]}" install maturin numpy $needed 2>"$scratch/pip.log" || unchecked "$(tail -n 1 "$scratch/pip.log")"
 
-export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/python/target}"
+# With the library's own builds, so that what both need is built once.
+export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$PWD/target}"
 say "the program that its results are held to"
-cargo build --quiet --bin tautline
-export TAUTLINE_BINARY="$CARGO_TARGET_DIR/debug/tautline"
+cargo build --release --quiet --bin tautline
+export TAUTLINE_BINARY="$CARGO_TARGET_DIR/release/tautline"
 say "formatting and lints"
 cargo fmt --check --manifest-path python/Cargo.toml
-cargo clippy --quiet --manifest-path python/Cargo.toml -- -D warnings
+cargo clippy --release --quiet --manifest-path python/Cargo.toml -- -D warnings
 say "the package"
-"$scratch/venv/bin/maturin" build --quiet --profile dev --locked --interpreter "$scratch/venv/bin/python" \
+"$scratch/venv/bin/maturin" build --quiet --release --locked --interpreter "$scratch/venv/bin/python" \
     --manifest-path python/Cargo.toml --out "$scratch/wheels"
 [[ "$(ls "$scratch/wheels")" == tautrope-*-cp310-abi3-*.whl ]] || { ls "$scratch/wheels" >&2; exit 1; }
 "${pip[@]}" install --no-deps "$scratch"/wheels/*.whl
