@@ -45,7 +45,7 @@ const fn usual(engine: &'static EngineKind, variant: &'static str) -> Contender 
 pub(in crate::lab) const GPU: Contender = usual(&engine::GPU, "windows");
 
 /// The same on threads.
-pub(in crate::lab) const CPU: Contender = usual(&engine::CPU, "sectors, windows");
+pub(in crate::lab) const CPU: Contender = usual(&engine::CPU, "windows");
 
 /// The note's method as it is written: one test a vertex and step.
 const GPU_RAYS: Contender = usual(&engine::GPU_RAYS, "all vertices");

@@ -25,7 +25,7 @@ fn all_engines_stand_side_by_side() {
     let names: Vec<_> = rows.iter().map(|r| (r["engine"].as_str().unwrap(), r["variant"].as_str().unwrap())).collect();
     let expected = [
         ("gpu", "windows"),
-        ("cpu", "sectors, windows"),
+        ("cpu", "windows"),
         ("gpu-rays", "all vertices"),
         ("gpu", "fast, windows"),
         ("funnel", "every step"),
