@@ -41,7 +41,7 @@ pub trait Engine: Send {
     }
 
     /// How many of the model's vertices it tries, that is, at how many a rope can turn within reach of the traces
-    /// evaluated so far; all with `keep_all`. `None` for engines that do not ask, or have not yet. See
+    /// evaluated so far; all with `keep_all`. `None` for engines that try none, or have not asked yet. See
     /// [`Visibility::only_required`](crate::visibility::Visibility::only_required).
     fn remaining(&self) -> Option<usize> {
         None

@@ -1,5 +1,5 @@
-//! The engines on a device. That of the product, in two precisions: a compute shader [finds](certified) candidates among which the CPU
-//! decides exactly, or [decides](fast) alone. In both, traces go round after round between device and CPU.
+//! The engines on a device. That of the product, in two precisions: a compute shader [finds](certified) candidates among
+//! which the CPU decides exactly, or [decides](fast) alone. In both, traces go round after round between device and CPU.
 
 mod certified;
 mod deciding;
@@ -35,7 +35,7 @@ pub static GPU: EngineKind = EngineKind {
 /// The note's method as it is written, for many ropes at once: n + 1 tests a step.
 pub static GPU_RAYS: EngineKind = EngineKind {
     name: RAYS,
-    about: "A compute shader tries every wall end in every step, the CPU pushes and pops: for measurements of throughput",
+    about: "A compute shader tries every wall end in every step, the CPU pushes and pops: a measure of throughput",
     precisions: &[Precision::Certified],
     asks: false,
     promise: Promise::Events,

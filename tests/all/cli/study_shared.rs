@@ -15,7 +15,7 @@ const STUDY: &str = "[scene]\nbuilt_in = \"rooms\"\nanchor = { sample = 2 }\n\
 fn study() -> Folder {
     let folder = Folder::new();
     folder.write("s.toml", STUDY);
-    folder.write("long.toml", STUDY.replace("950", "30_000").replace("block = 40", "block = 400"));
+    folder.write("long.toml", STUDY.replace("950", "120_000").replace("block = 40", "block = 400"));
     folder
 }
 
@@ -97,7 +97,8 @@ fn a_study_stops_before_its_time_is_over() {
     let folder = study();
     folder.done("study run long.toml --out truth --shard 1/2");
     let run = "study run long.toml --shard 1/2 --out a --resume";
-    folder.run(&format!("{run} --stop-after 1s")).has_failed(4, "a time", &["stopped"]);
+    let mut command = folder.command(&format!("{run} --stop-after 1s"));
+    Finished::of(command.env("RAYON_NUM_THREADS", "1")).has_failed(4, "a time", &["stopped"]);
     let at_once = |seconds: &str| {
         let mut command = folder.command(&format!("{run} --stop-before 5m"));
         let end = std::time::SystemTime::UNIX_EPOCH.elapsed().unwrap().as_secs() + 299;
@@ -200,6 +201,8 @@ fn of_two_writers_one_waits_or_leaves() {
     folder.done("study run long.toml --out truth");
     let mut first = start(&folder, "study run long.toml --out a --resume");
     wait_for(&folder, &mut first, "a");
+    // So that it is there until the others have seen it, however fast it is.
+    send("STOP", &first);
     let process = format!("process {}", first.id());
     folder.run("study run long.toml --out a --resume").has_failed(6, "a second writer", &["a is in use", &process]);
     let second = start(&folder, "study run long.toml --out a --resume --wait 5m");
