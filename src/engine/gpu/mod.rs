@@ -1,5 +1,6 @@
-//! The engines on a device. That of the product, in two precisions: a compute shader [finds](certified) candidates among
-//! which the CPU decides exactly, or [decides](fast) alone. In both, traces go round after round between device and CPU.
+//! The engines on a device. That of the product, in two precisions: a compute shader [finds](certified) candidates
+//! among which the CPU decides exactly, or [decides](fast) alone. In both, traces go round after round between device
+//! and CPU.
 
 mod certified;
 mod deciding;
