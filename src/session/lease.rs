@@ -48,12 +48,15 @@ impl Lease {
     fn take_after(folder: &Path, is_locked: bool, beat: Duration, lapse: Duration) -> Result<Self, SessionError> {
         let failed = |path: &Path, cause| SessionError::Write(WriteError::Io { path: path.to_owned(), cause });
         let mut holder = Holder::here();
-        loop {
-            let before = numbers(folder).map_err(|cause| failed(folder, cause))?.last().copied();
-            if let Some(number) = before {
+        'again: loop {
+            let leases = numbers(folder).map_err(|cause| failed(folder, cause))?;
+            let before = leases.last().copied();
+            for number in leases {
                 match watch(&file(folder, number), is_locked, lapse) {
-                    Watched::Over => {}
-                    Watched::Gone => continue,
+                    Watched::Over if Some(number) == before => {}
+                    // Who took over from that one ended before removing it.
+                    Watched::Over => drop(fs::remove_file(file(folder, number))),
+                    Watched::Gone => continue 'again,
                     Watched::Lives(holder) => {
                         let holder = holder.map(Box::new);
                         return Err(SessionError::InUse { folder: folder.to_owned(), holder });
@@ -247,6 +250,17 @@ mod tests {
             taken.iter().filter(|lease| lease.is_held()).count()
         });
         assert_eq!(held, 1);
+    }
+
+    #[test]
+    fn who_ended_while_taking_over_is_in_nobodys_way() {
+        let room = tempfile::tempdir().unwrap();
+        for number in [3, 4, 6] {
+            fs::write(file(room.path(), number), "").unwrap();
+        }
+        let lease = Lease::take_after(room.path(), true, BEAT, LAPSE).unwrap();
+        assert!(lease.is_held());
+        assert_eq!(numbers(room.path()).unwrap(), [7]);
     }
 
     #[test]
