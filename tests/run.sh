@@ -94,5 +94,3 @@ say "kills at random system calls, and a full disk"
 tests/faults.sh 12
 say "one study over many machines: Slurm and Dask"
 tests/cluster.sh
-say "the Python package"
-tests/python.sh

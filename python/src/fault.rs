@@ -109,11 +109,7 @@ impl From<AnchorError> for Fault {
 impl From<PlanError> for Fault {
     fn from(error: PlanError) -> Fault {
         let fault = Fault::new("StudyError", &error);
-        let line = error.what.strip_prefix("line ").and_then(|rest| {
-            let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
-            digits.parse().ok()
-        });
-        let fault = line.into_iter().fold(fault, |fault, line| fault.number("line", line));
+        let fault = error.line.into_iter().fold(fault, |fault, line| fault.number("line", line as u64));
         error.path.iter().fold(fault, |fault, path| fault.file(path))
     }
 }
