@@ -37,8 +37,8 @@ pub(super) struct Clearings {
     side: f64,
     columns: usize,
     rows: usize,
-    /// For each cell, row by row and with a border of further ones: 0 if a wall meets it, else 1 and the number of rings
-    /// of cells around it that none meets.
+    /// For each cell, row by row and with a border of further ones: 0 if a wall meets it, else 1 and the number of
+    /// rings of cells around it that none meets.
     clear: Vec<u8>,
 }
 
