@@ -146,10 +146,6 @@ mod tests {
     struct Heading(DVec2);
 
     impl Stride for Heading {
-        fn length(&self) -> f64 {
-            self.0.length()
-        }
-
         fn draw(&mut self, _: &mut Random) -> DVec2 {
             self.0
         }

@@ -5,12 +5,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::at_walls::AtWalls;
-use super::kind::{Dice, Draw, Kind};
+use super::kind::{Basics, Draw, Kind};
 use super::room::Room;
-use super::start::{From, Start};
+use super::start::Start;
+use super::steps::StepByStep;
 use super::stride::Stride;
 use crate::study::plan_error::PlanError;
-use crate::study::random::{Purpose, Random};
+use crate::study::random::Random;
 
 /// A random walk whose steps are normally distributed in x and y.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,32 +30,13 @@ pub struct GaussianWalk {
 }
 
 impl Kind for GaussianWalk {
-    fn step(&self) -> f64 {
-        self.step
+    fn basics(&self) -> Basics {
+        Basics { step: self.step, steps: self.steps, start: self.start, at_walls: Some(self.at_walls) }
     }
 
-    fn steps(&self) -> u32 {
-        self.steps
-    }
-
-    fn start(&self) -> Start {
-        self.start
-    }
-
-    fn at_walls(&self) -> Option<AtWalls> {
-        Some(self.at_walls)
-    }
-
-    fn drawer(&self, _: &Room) -> Result<Box<dyn Draw>, PlanError> {
-        Ok(Box::new(self.clone()))
-    }
-}
-
-impl Draw for GaussianWalk {
-    fn draw(&self, room: &Room, start: From, dice: Dice) -> (Vec<DVec2>, usize) {
-        let mut random = dice.of(Purpose::Walk);
-        let stride = Gaussian { step: self.step };
-        room.walk(self.at_walls, start.at(&room.model), self.steps, stride, &mut random)
+    fn drawer(&self, room: &Room) -> Result<Box<dyn Draw>, PlanError> {
+        let step = self.step;
+        Ok(StepByStep::boxed(room, self.basics(), move |_| Gaussian { step }))
     }
 }
 
@@ -64,10 +46,6 @@ struct Gaussian {
 }
 
 impl Stride for Gaussian {
-    fn length(&self) -> f64 {
-        self.step
-    }
-
     #[inline]
     fn draw(&mut self, random: &mut Random) -> DVec2 {
         self.step * random.normal()

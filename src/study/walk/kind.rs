@@ -12,19 +12,23 @@ use crate::study::random::{Purpose, Random};
 /// The most steps of a trace: its points are numbered in 31 bits.
 const MOST_STEPS: u32 = (1 << 31) - 2;
 
+/// What plans of all kinds of walks have.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Basics {
+    /// The length of a step, or the standard deviation of one in x and in y.
+    pub(super) step: f64,
+    /// How many steps a trace has.
+    pub(super) steps: u32,
+    /// Where traces start.
+    pub(super) start: Start,
+    /// What becomes of a step that meets a wall; `None` for a walk none of whose steps is drawn so.
+    pub(super) at_walls: Option<AtWalls>,
+}
+
 /// A kind of walk, as a plan has it.
 pub(crate) trait Kind {
-    /// The length of a step, or the standard deviation of one in x and in y.
-    fn step(&self) -> f64;
-
-    /// How many steps a trace has.
-    fn steps(&self) -> u32;
-
-    /// Where traces start.
-    fn start(&self) -> Start;
-
-    /// What becomes of a step that meets a wall; `None` for a walk none of whose steps is drawn so.
-    fn at_walls(&self) -> Option<AtWalls>;
+    /// What its plan has in common with those of other kinds.
+    fn basics(&self) -> Basics;
 
     /// Whether the numbers that only this kind has can be walked with.
     fn check(&self) -> Result<(), PlanError> {
@@ -42,7 +46,7 @@ pub(crate) trait Kind {
 impl dyn Kind + '_ {
     /// Whether its numbers can be walked with.
     pub(super) fn check_all(&self) -> Result<(), PlanError> {
-        let (step, steps) = (self.step(), self.steps());
+        let Basics { step, steps, .. } = self.basics();
         if !(step > 0.0 && check_point(DVec2::new(step, 0.0)).is_ok()) {
             return Err(PlanError::new(format!(
                 "walk.step: {} is no length of a step; give a number above 0, in the scene's unit",

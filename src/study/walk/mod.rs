@@ -1,6 +1,7 @@
 //! Random traces, each found by its number alone.
 
 mod at_walls;
+mod clearings;
 mod gaussian;
 mod kind;
 mod links;
@@ -84,17 +85,17 @@ impl WalkPlan {
 
     /// The length of a step, or the standard deviation of one in x and in y; `None` for given traces.
     pub fn step(&self) -> Option<f64> {
-        self.kind().map(Kind::step)
+        self.kind().map(|kind| kind.basics().step)
     }
 
     /// What becomes of a step that meets a wall; `None` for traces none of whose steps is drawn so.
     pub fn at_walls(&self) -> Option<AtWalls> {
-        self.kind().and_then(Kind::at_walls)
+        self.kind().and_then(|kind| kind.basics().at_walls)
     }
 
     /// How many steps each trace has; `None` for given traces.
     pub fn steps(&self) -> Option<u32> {
-        self.kind().map(Kind::steps)
+        self.kind().map(|kind| kind.basics().steps)
     }
 
     /// Whether its numbers can be walked with.
@@ -151,7 +152,7 @@ impl Walks {
             ));
         }
         let size = room.high - room.low;
-        let step = kind.step();
+        let step = kind.basics().step;
         if step > size.max_element() {
             return Err(PlanError::new(format!(
                 "walk.step: a step of {} is wider than the scene, which is {} by {}; give a shorter one, in the \
@@ -162,7 +163,7 @@ impl Walks {
             )));
         }
         let drawer = kind.drawer(&room)?;
-        let starts = Starts::new(&room.model, kind.start())?;
+        let starts = Starts::new(&room.model, kind.basics().start)?;
         Ok(Walks { room, drawer, starts, seed })
     }
 

@@ -8,13 +8,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::at_walls::AtWalls;
-use super::kind::{Dice, Draw, Kind};
+use super::kind::{Basics, Draw, Kind};
 use super::room::Room;
-use super::start::{From, Start};
+use super::start::Start;
+use super::steps::StepByStep;
 use super::stride::Stride;
 use crate::geometry::number;
 use crate::study::plan_error::PlanError;
-use crate::study::random::{Purpose, Random};
+use crate::study::random::Random;
 
 /// The least by which the heading may turn, in radians, once a step was drawn in vain: one that never turns would stand
 /// before a wall for good.
@@ -51,20 +52,8 @@ fn default_turn() -> f64 {
 }
 
 impl Kind for PersistentWalk {
-    fn step(&self) -> f64 {
-        self.step
-    }
-
-    fn steps(&self) -> u32 {
-        self.steps
-    }
-
-    fn start(&self) -> Start {
-        self.start
-    }
-
-    fn at_walls(&self) -> Option<AtWalls> {
-        Some(self.at_walls)
+    fn basics(&self) -> Basics {
+        Basics { step: self.step, steps: self.steps, start: self.start, at_walls: Some(self.at_walls) }
     }
 
     fn check(&self) -> Result<(), PlanError> {
@@ -77,16 +66,9 @@ impl Kind for PersistentWalk {
         )))
     }
 
-    fn drawer(&self, _: &Room) -> Result<Box<dyn Draw>, PlanError> {
-        Ok(Box::new(self.clone()))
-    }
-}
-
-impl Draw for PersistentWalk {
-    fn draw(&self, room: &Room, start: From, dice: Dice) -> (Vec<DVec2>, usize) {
-        let mut random = dice.of(Purpose::Walk);
-        let stride = Persistent::new(self.step, self.turn, &mut random);
-        room.walk(self.at_walls, start.at(&room.model), self.steps, stride, &mut random)
+    fn drawer(&self, room: &Room) -> Result<Box<dyn Draw>, PlanError> {
+        let (step, turn) = (self.step, self.turn);
+        Ok(StepByStep::boxed(room, self.basics(), move |random| Persistent::new(step, turn, random)))
     }
 }
 
@@ -176,10 +158,6 @@ fn direction(angle: f64) -> DVec2 {
 }
 
 impl Stride for Persistent {
-    fn length(&self) -> f64 {
-        self.step
-    }
-
     #[inline]
     fn draw(&mut self, random: &mut Random) -> DVec2 {
         if self.next == AHEAD {

@@ -3,40 +3,59 @@
 use glam::DVec2;
 
 use super::at_walls::{AtWalls, meet};
-use super::room::{Clearing, Room};
+use super::clearings::{Clearing, Clearings};
+use super::kind::{Basics, Dice, Draw};
+use super::room::Room;
+use super::start::From;
 use super::stride::Stride;
 use crate::geometry::point;
-use crate::study::random::Random;
+use crate::study::random::{Purpose, Random};
 
-impl Room {
-    /// The points of a walk of `steps` steps from `start`, in memory with room for one more, and how many of the steps
-    /// met a wall or the border as they were drawn first.
-    pub(super) fn walk(
-        &self,
-        at_walls: AtWalls,
-        start: DVec2,
-        steps: u32,
-        mut stride: impl Stride,
-        random: &mut Random,
-    ) -> (Vec<DVec2>, usize) {
-        let mut points = Vec::with_capacity(steps as usize + 2);
-        points.push(start);
-        let mut met = 0;
-        let (mut here, mut clearing) = (start, Clearing::default());
-        for _ in 0..steps {
-            let next = point(here + stride.draw(random));
+/// Draws walks whose steps are drawn one after the other.
+pub(super) struct StepByStep<F> {
+    basics: Basics,
+    at_walls: AtWalls,
+    clearings: Clearings,
+    /// Makes what draws the steps of a trace.
+    stride: F,
+}
+
+impl<S: Stride, F: Fn(&mut Random) -> S + Send + Sync + 'static> StepByStep<F> {
+    /// For walks in a room.
+    pub(super) fn boxed(room: &Room, basics: Basics, stride: F) -> Box<dyn Draw> {
+        let at_walls = basics.at_walls.unwrap_or_default();
+        Box::new(StepByStep { clearings: Clearings::new(room, basics.step), basics, at_walls, stride })
+    }
+}
+
+impl<S: Stride, F: Fn(&mut Random) -> S + Send + Sync> Draw for StepByStep<F> {
+    fn draw(&self, room: &Room, start: From, dice: Dice) -> (Vec<DVec2>, usize) {
+        let mut random = dice.of(Purpose::Walk);
+        let mut stride = (self.stride)(&mut random);
+        let mut points = Vec::with_capacity(self.basics.steps as usize + 2);
+        let mut here = start.at(&room.model);
+        points.push(here);
+        let (mut met, mut clearing) = (0, Clearing::NONE);
+        for _ in 0..self.basics.steps {
+            let next = point(here + stride.draw(&mut random));
             if clearing.holds(next) {
                 stride.take();
                 here = next;
             } else {
-                if self.is_open(here, next) {
+                // It may hold this step as well.
+                let ahead = self.clearings.around(next);
+                if (ahead.holds(here) && ahead.holds(next)) || room.is_open(here, next) {
                     stride.take();
-                    here = next;
+                    (here, clearing) = (next, ahead);
                 } else {
                     met += 1;
-                    here = meet(self, at_walls, here, next, &mut stride, random);
+                    here = meet(room, self.at_walls, here, next, &mut stride, &mut random);
+                    clearing = self.clearings.around(here);
                 }
-                clearing.move_to(self, here, stride.length());
+                // A step starts where the one before ended: only a clearing that holds that is of use.
+                if !clearing.holds(here) {
+                    clearing = Clearing::NONE;
+                }
             }
             points.push(here);
         }

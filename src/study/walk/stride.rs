@@ -6,9 +6,6 @@ use crate::study::random::Random;
 
 /// How the steps of one kind of walk are drawn.
 pub(super) trait Stride {
-    /// How long steps are, about.
-    fn length(&self) -> f64;
-
     /// The next step.
     fn draw(&mut self, random: &mut Random) -> DVec2;
 

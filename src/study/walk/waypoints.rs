@@ -6,8 +6,7 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::at_walls::AtWalls;
-use super::kind::{Dice, Draw, Kind};
+use super::kind::{Basics, Dice, Draw, Kind};
 use super::paths::{Paths, Search};
 use super::room::Room;
 use super::start::{From, Start, TOO_WIDE};
@@ -36,20 +35,8 @@ pub struct WaypointDrive {
 }
 
 impl Kind for WaypointDrive {
-    fn step(&self) -> f64 {
-        self.step
-    }
-
-    fn steps(&self) -> u32 {
-        self.steps
-    }
-
-    fn start(&self) -> Start {
-        self.start
-    }
-
-    fn at_walls(&self) -> Option<AtWalls> {
-        None
+    fn basics(&self) -> Basics {
+        Basics { step: self.step, steps: self.steps, start: self.start, at_walls: None }
     }
 
     fn drawer(&self, room: &Room) -> Result<Box<dyn Draw>, PlanError> {
