@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Answer, Failed, LengthError, Point, Report, Setting};
-use crate::lab::{Spread, Surroundings};
+use super::{Failed, Point, Report};
+use crate::lab::Surroundings;
 
 /// What was measured, as its JSON has it.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -22,48 +22,9 @@ pub struct Document {
     /// For how many traces, from the first on, the scalar reference itself vouched for the truth.
     pub vouched_by_reference: usize,
     /// Every method at every setting.
-    pub points: Vec<Line>,
+    pub points: Vec<Point>,
     /// What failed.
     pub failed: Vec<Failure>,
-}
-
-/// One method at one setting.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Line {
-    /// The method.
-    pub method: &'static str,
-    /// Its engine.
-    pub engine: &'static str,
-    /// The setting, in words.
-    pub setting: String,
-    /// Every so many points of a trace were used.
-    pub stride: usize,
-    /// By how much walls were simplified at most; null for not at all.
-    pub simplify: Option<f64>,
-    /// The number of vertices of the scene as it was used.
-    pub n: usize,
-    /// On how many traces it ran.
-    pub traces: usize,
-    /// How many steps these have, before any are left out.
-    pub steps: u64,
-    /// The time of each of these, in nanoseconds.
-    pub ns_per_step: Spread,
-    /// How many longer steps would have jumped a wall, and were walked point by point.
-    pub jumps: usize,
-    /// How many traces cross a simplified wall.
-    pub crossing_traces: usize,
-    /// On how many traces the events differ; null for a method that keeps none.
-    pub event_mismatch: Option<usize>,
-    /// On how many the taut rope at the end does.
-    pub final_mismatch: usize,
-    /// The error of the length at the end, as a share of it.
-    pub length_error: LengthError,
-    /// The mean length at the end.
-    pub mean_length: Answer,
-    /// The mean number of wraps a trace; null for a method that keeps no events.
-    pub mean_wraps: Option<Answer>,
-    /// Whether no other point is faster and as right.
-    pub pareto: bool,
 }
 
 /// What could not be measured.
@@ -94,32 +55,8 @@ impl From<&Report> for Document {
             traces: measured.traces,
             steps: measured.steps,
             vouched_by_reference: measured.vouched,
-            points: measured.points.iter().map(Line::from).collect(),
+            points: measured.points.clone(),
             failed: measured.failed.iter().map(Failure::from).collect(),
-        }
-    }
-}
-
-impl From<&Point> for Line {
-    fn from(point: &Point) -> Self {
-        Line {
-            method: point.method,
-            engine: point.engine,
-            setting: point.setting.to_string(),
-            stride: point.setting.stride(),
-            simplify: if let Setting::Simplify(tolerance) = point.setting { Some(tolerance) } else { None },
-            n: point.n,
-            traces: point.traces,
-            steps: point.steps,
-            ns_per_step: point.ns_per_step,
-            jumps: point.jumps,
-            crossing_traces: point.crossing_traces,
-            event_mismatch: point.event_mismatch,
-            final_mismatch: point.final_mismatch,
-            length_error: point.length_error,
-            mean_length: point.length,
-            mean_wraps: point.wraps,
-            pareto: point.pareto,
         }
     }
 }

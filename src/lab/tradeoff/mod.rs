@@ -14,7 +14,7 @@ mod report;
 mod setting;
 mod truth;
 
-pub use document::{Document, Failure, Line};
+pub use document::{Document, Failure};
 pub use error::{TradeoffError, WorkError};
 pub use measure::{Failed, Progress, Tradeoff, tradeoff};
 pub use method::Method;

@@ -7,14 +7,15 @@ use super::setting::Setting;
 use super::truth::Answer;
 use crate::lab::Spread;
 
-/// One method at one setting: what it costs and what it gets wrong.
-#[derive(Debug, Clone)]
+/// One method at one setting: what it costs and what it gets wrong. A [`Document`](super::Document) has it so.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Point {
     /// The method's name.
     pub method: &'static str,
     /// The engine's, as the command line knows it.
     pub engine: &'static str,
     /// What was traded besides.
+    #[serde(flatten)]
     pub setting: Setting,
     /// The number of vertices of the scene as it was used.
     pub n: usize,
@@ -35,8 +36,10 @@ pub struct Point {
     /// The error of the length at the end as a share of it, over the traces.
     pub length_error: LengthError,
     /// The mean length at the end.
+    #[serde(rename = "mean_length")]
     pub length: Answer,
     /// The mean number of wraps a trace; `None` for a method that keeps no events.
+    #[serde(rename = "mean_wraps")]
     pub wraps: Option<Answer>,
     /// Whether no other point is faster and as right, or as fast and more right: by the median time, the shares of
     /// traces whose events and whose rope at the end differ, and the mean error of the length. A method that keeps no

@@ -5,6 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::{TradeoffError, WorkError};
 use crate::example::{Walker, walks};
@@ -21,12 +23,32 @@ const STRIDES: [u32; 4] = [2, 4, 8, 16];
 const TOLERANCES: [f64; 3] = [0.5, 2.0, 8.0];
 
 /// How much accuracy is given for speed, whatever the method.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(into = "Written")]
+#[schemars(with = "Written")]
 pub enum Setting {
     /// Every so many points of a trace are used, at least 1; 1 gives nothing away.
     Stride(usize),
     /// Walls are simplified by at most that much, in the scene's unit.
     Simplify(f64),
+}
+
+/// A setting as documents have it.
+#[derive(Serialize, JsonSchema)]
+struct Written {
+    /// The setting, in words.
+    setting: String,
+    /// Every so many points of a trace were used.
+    stride: usize,
+    /// By how much walls were simplified at most; null for not at all.
+    simplify: Option<f64>,
+}
+
+impl From<Setting> for Written {
+    fn from(setting: Setting) -> Self {
+        let simplify = if let Setting::Simplify(tolerance) = setting { Some(tolerance) } else { None };
+        Written { setting: setting.to_string(), stride: setting.stride(), simplify }
+    }
 }
 
 impl Setting {
