@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use pyo3::prelude::*;
 use tautline::engine::Engine;
-use tautline::output::WholeFile;
+use tautline::output::{WholeFile, folder_of};
 use tautline::session::{Computed, Folder, Session, look};
 use tautline::study::{self, EXAMPLE, Plan, Shard};
 
@@ -48,7 +48,7 @@ impl Study {
     /// The study in a file.
     #[staticmethod]
     fn of_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let base = path.parent().filter(|base| *base != Path::new("")).unwrap_or(Path::new(".")).to_owned();
+        let base = folder_of(&path).to_owned();
         let open = |_: &Work| {
             let study = study::Study::open(Plan::read(&path)?, &base).map_err(|error| error.in_file(&path))?;
             study.check_moves().map_err(|error| error.in_file(&path))?;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
+use tautline::output::folder_of;
 use tautline::scene::map_image;
 
 use super::failure::Failure;
@@ -31,7 +32,7 @@ pub(crate) fn keep_apart(inputs: &[Named<'_>], outputs: &[Named<'_>]) -> Result<
 /// The path without links and detours, so that equal places have equal paths; the file need not be there yet.
 pub(crate) fn place(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = folder_of(path);
         let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
         path.file_name().map_or(folder.clone(), |name| folder.join(name))
     })

@@ -26,6 +26,7 @@ pub use merge::merge_results;
 pub use passing::{abandon, commit, remove_left_files};
 pub use results::{ResultWriter, write_results};
 pub use scene::{WrittenScene, write_scene};
+pub use target::folder_of;
 pub use whole_file::WholeFile;
 pub use write_error::WriteError;
 

@@ -115,6 +115,17 @@ pub(super) fn refuse_special(path: &Path) -> Result<(), WriteError> {
     Err(WriteError::target(path, format!("what stands there is not a regular file but {kind}; {why}")))
 }
 
+/// The folder in which a file lies: of a bare name, the one that is the current one.
+///
+/// ```
+/// use std::path::Path;
+/// use tautline::output::folder_of;
+/// assert_eq!(["a.csv", "b/a.csv"].map(|path| folder_of(Path::new(path))), [".", "b"].map(Path::new));
+/// ```
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Whether `path` leads to a file through the number under which a process has it open, as `/dev/stdout` and
 /// `/dev/fd/3` do. A new file in its place would not be the one that is open.
 fn is_descriptor(path: &Path) -> bool {
@@ -122,8 +133,7 @@ fn is_descriptor(path: &Path) -> bool {
     // As many links as the system follows.
     for _ in 0..40 {
         let Some(name) = path.file_name() else { return false };
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let Ok(folder) = folder.canonicalize() else { return false };
+        let Ok(folder) = folder_of(&path).canonicalize() else { return false };
         if folder.ends_with("fd") && (folder.starts_with("/proc") || folder.starts_with("/dev")) {
             return true;
         }

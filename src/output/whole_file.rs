@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::WriteError;
 use super::passing::Passing;
-use super::target::Target;
+use super::target::{Target, folder_of};
 
 /// A file under way: it grows under a temporary name in the target's folder and takes the target's name when it is
 /// whole, in [`finish`](Self::finish). Dropped before that, it vanishes and the target is as it was.
@@ -36,10 +36,7 @@ impl WholeFile {
         let Some(name) = target.path.file_name() else {
             return Err(WriteError::target(path, "the path names no file"));
         };
-        let folder = match target.path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
+        let folder = folder_of(&target.path);
         if !folder.is_dir() {
             let fault = if folder.exists() { "is not a folder" } else { "does not exist" };
             return Err(WriteError::target(path, format!("the folder {} {fault}", folder.display())));

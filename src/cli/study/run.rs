@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use anyhow::anyhow;
 use tautline::engine::Job;
+use tautline::output::folder_of;
 use tautline::session::{Computed, Folder, Saved, Session, answered};
 use tautline::study::{EXAMPLE, Plan, PlanError, Shard, Stopped, Study, read_blocks};
 
@@ -100,10 +101,9 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let guard = Guard::new(nothing_new(is_repeated, None));
     args.stop.set()?;
     let (mut plan, base) = match &args.file {
-        Some(file) => (Plan::read(file)?, file.parent().map(Path::to_owned).unwrap_or_default()),
-        None => (Plan::parse(EXAMPLE)?, PathBuf::new()),
+        Some(file) => (Plan::read(file)?, folder_of(file)),
+        None => (Plan::parse(EXAMPLE)?, Path::new(".")),
     };
-    let base = if base.as_os_str().is_empty() { PathBuf::from(".") } else { base };
     plan.run.traces = args.count.or(plan.run.traces);
     plan.run.seed = args.seed.unwrap_or(plan.run.seed);
     plan.run.precision = args.engine.precision().unwrap_or(plan.run.precision);
@@ -126,7 +126,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         Some(file) => e.in_file(file),
         None => e,
     };
-    let study = Arc::new(Study::open(plan, &base).map_err(located)?);
+    let study = Arc::new(Study::open(plan, base).map_err(located)?);
     study.check_moves().map_err(located)?;
     if let Some(file) = &study.plan().scene.file {
         note(file, study.models()[0].scene());
@@ -153,7 +153,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let folder = Arc::new(args.wait.take(|| Folder::make(&out))?);
     guard.change(nothing_new(is_repeated, Some(folder.clone())));
     let begin = if args.resume { Session::begin_or_raise } else { Session::begin };
-    let begun = begin(folder.clone(), study.clone(), &base, shard);
+    let begun = begin(folder.clone(), study.clone(), base, shard);
     tell(&folder);
     let ended = begun.map_err(Failure::from).and_then(|session| proceed(Arc::new(session), &guard, engines, args.json));
     if ended.is_err() {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::anyhow;
-use tautline::output::write_whole;
+use tautline::output::{folder_of, write_whole};
 use tautline::study::{Plan, Shard, Study};
 
 use super::answer::duration;
@@ -56,7 +56,7 @@ const LEAST: f64 = 60.0;
 const MOST: f64 = 1000.0;
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let folder = args.file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(&args.file);
     let study = Study::open(Plan::read(&args.file)?, folder).map_err(|e| e.in_file(&args.file))?;
     study.check_moves().map_err(|e| e.in_file(&args.file))?;
     let all = measure(&study, &args.engine, Shard::WHOLE)?.all(&study, Shard::WHOLE).unwrap_or_default();

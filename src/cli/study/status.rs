@@ -25,7 +25,7 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let status = status(&args.folders);
     if args.json {
-        return print_json(&serde_json::to_value(&status).map_err(|e| Failure::internal(e.into()))?);
+        return print_json(&status);
     }
     print(&table(&status))
 }
