@@ -6,18 +6,7 @@
 //
 // The twin on the CPU is `Simd::sweep` in `src/candidates/simd.rs`.
 //
-// `shared/lists.wgsl` stands before this.
-
-// A swept triangle, as three half-planes in the frame's unit (xy: the normal, pointing inwards; z: the offset): p is
-// inside where dot(normal, p) + offset >= 0. And the places, counted over all pages, of the vertices to be tried.
-struct Query {
-    right: vec3<f32>,
-    first: u32,
-    left: vec3<f32>,
-    count: u32,
-    far: vec3<f32>,
-    unused: u32,
-}
+// `shared/lists.wgsl` and `shared/query.wgsl` stand before this.
 
 // How many vertices are inside, and the places of the first 15 of them. A count above 15 is an overflow.
 struct Found {
@@ -25,7 +14,6 @@ struct Found {
     places: array<u32, 15>,
 }
 
-@group(0) @binding(1) var<storage, read> queries: array<Query>;
 @group(0) @binding(2) var<storage, read_write> found: array<Found>;
 
 fn inside(query: Query, p: vec2<f32>) -> bool {

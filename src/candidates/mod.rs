@@ -3,6 +3,7 @@
 //! A pass is conservative: it may name a vertex too many, never one too few. It works in f32; the exact update then
 //! decides among the few vertices that it names.
 
+mod blocks;
 mod frame;
 mod list;
 mod lists;
@@ -15,6 +16,7 @@ mod window;
 
 use bytemuck::{Pod, Zeroable};
 
+pub use blocks::{BLOCK, BLOCKS, Blocks};
 pub use frame::Frame;
 pub use list::List;
 pub use lists::{LISTS_BUDGET, Lists};

@@ -5,6 +5,8 @@
 //! but speed depends on that: they compute the same numbers with any instruction set, since Rust fuses no products and
 //! sums by itself. `tests/vectors.sh` looks into the binary for the instructions.
 
+use std::ops::Range;
+
 use glam::DVec2;
 use pulp::{Arch, WithSimd};
 
@@ -33,6 +35,13 @@ impl Simd {
     #[inline]
     pub fn farthest(self, slopes: &Slopes, from: usize, to: usize) -> f64 {
         self.greatest(&slopes.squared[from..=to])
+    }
+
+    /// Adds the numbers of the vertices of `list` inside the triangle of `query`, of the first `count` or a few more,
+    /// to `found`.
+    #[inline]
+    pub fn sweep(self, list: &List, query: &Query, count: usize, found: &mut Vec<u32>) {
+        self.sweep_some(list, query, 0..count, found);
     }
 }
 
@@ -87,9 +96,12 @@ wide! {
 }
 
 wide! {
-    /// Adds the numbers of the vertices of `list` inside the triangle of `query`, of the first `count` or a few more,
-    /// to `found`. The twin of `shaders/sweep.wgsl`.
-    pub sweep as SweepOp(list: &'a List, query: &'a Query, count: usize, found: &'a mut Vec<u32>) -> () = sweep_list
+    /// Adds the numbers of the vertices of `list` inside the triangle of `query`, of those with `ranks` or of a few
+    /// more, to `found`. Ranks beyond the list have no vertices. The twin of `shaders/sweep.wgsl` and
+    /// `shaders/rays.wgsl`.
+    pub sweep_some as SweepOp(
+        list: &'a List, query: &'a Query, ranks: Range<usize>, found: &'a mut Vec<u32>
+    ) -> () = sweep_list
 }
 
 #[inline(always)]
@@ -210,8 +222,9 @@ fn bit_if(condition: bool, bit: u64) -> u64 {
 }
 
 #[inline(always)]
-fn sweep_list(list: &List, query: &Query, count: usize, found: &mut Vec<u32>) {
-    for places in list.places.iter().take(count.div_ceil(VERTICES)) {
+fn sweep_list(list: &List, query: &Query, ranks: Range<usize>, found: &mut Vec<u32>) {
+    let (first, end) = (ranks.start / VERTICES, ranks.end.div_ceil(VERTICES));
+    for places in list.places.iter().take(end).skip(first) {
         let mut inside = inside_block(query, places);
         while inside != 0 {
             found.push(places.numbers[inside.trailing_zeros() as usize % VERTICES]);

@@ -21,7 +21,7 @@ pub use engine::Engine;
 pub use engines::{ENGINES, open_best};
 pub use error::EngineError;
 pub use funnel::{FUNNEL, Funnel};
-pub use gpu::{FastGpu, GPU, GPU_RAYS, Gpu};
+pub use gpu::{FastGpu, GPU, GPU_RAYS, Gpu, GpuRays};
 pub use job::{Job, Phase};
 pub use live::{AdvanceError, LiveEvent, LiveRope};
 pub use note::{NOTE, Note};

@@ -2,21 +2,24 @@
 
 use bytemuck::Pod;
 
-use crate::candidates::{DevicePlace, Found, Query};
+use crate::candidates::{Blocks, DevicePlace, Found, Query};
 use crate::fast::{Answer, MOST_LEGS, Question};
 
-/// A shader of lists: what all of these share, and its own source.
+/// A shader of lists: what all of these share, what some of them share besides, and its own source.
 macro_rules! of_lists {
-    ($file:literal) => {
-        concat!(include_str!("../../shaders/shared/lists.wgsl"), include_str!($file))
+    ($($file:literal),+) => {
+        concat!(include_str!("../../shaders/shared/lists.wgsl"), $(include_str!(concat!("../../shaders/", $file))),+)
     };
 }
 
 /// The source of the candidate pass.
-pub const SWEEP_WGSL: &str = of_lists!("../../shaders/sweep.wgsl");
+pub const SWEEP_WGSL: &str = of_lists!("shared/query.wgsl", "sweep.wgsl");
+
+/// The source of the kernel that tries all vertices.
+pub const RAYS_WGSL: &str = of_lists!("shared/query.wgsl", "rays.wgsl");
 
 /// The source of the kernel that decides in f32.
-pub const DECIDE_WGSL: &str = of_lists!("../../shaders/decide.wgsl");
+pub const DECIDE_WGSL: &str = of_lists!("decide.wgsl");
 
 /// A kernel: a shader, and what it is asked and answers.
 pub trait Kernel {
@@ -28,6 +31,8 @@ pub trait Kernel {
     const NAME: &'static str;
     /// The most points of a trace that come with a query; 0 for a kernel that needs none.
     const POINTS: usize;
+    /// How many queries a lane takes.
+    const QUERIES: u32 = 1;
 
     /// The query as it is sent: its list begins at `first`, its points at number `points` of the round's.
     fn placed(query: &Self::Query, first: DevicePlace, points: u32) -> Self::Query;
@@ -52,6 +57,26 @@ impl Kernel for Sweeping {
 
     fn tried(query: &Query) -> (DevicePlace, u32) {
         (query.first, query.count)
+    }
+}
+
+/// The kernel that tries all vertices, `shaders/rays.wgsl`.
+#[derive(Debug, Clone, Copy)]
+pub struct TryingAll;
+
+impl Kernel for TryingAll {
+    type Query = Query;
+    type Found = Blocks;
+    const NAME: &'static str = "rays";
+    const POINTS: usize = 0;
+    const QUERIES: u32 = 8;
+
+    fn placed(query: &Query, first: DevicePlace, points: u32) -> Query {
+        Sweeping::placed(query, first, points)
+    }
+
+    fn tried(query: &Query) -> (DevicePlace, u32) {
+        Sweeping::tried(query)
     }
 }
 
@@ -87,7 +112,7 @@ mod tests {
     use super::super::probe::PROBE_WGSL;
     use super::super::sample::Sample;
     use super::*;
-    use crate::candidates::ROOM;
+    use crate::candidates::{BLOCK, BLOCKS, ROOM};
     use crate::fast::{NOTHING, UNWRAP};
 
     fn shader(wgsl: &str) -> Module {
@@ -105,7 +130,7 @@ mod tests {
     #[test]
     fn the_shaders_are_valid() {
         use naga::valid::{Capabilities, ValidationFlags, Validator};
-        for wgsl in [SWEEP_WGSL, DECIDE_WGSL, PROBE_WGSL] {
+        for wgsl in [SWEEP_WGSL, RAYS_WGSL, DECIDE_WGSL, PROBE_WGSL] {
             Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&shader(wgsl)).unwrap();
         }
     }
@@ -120,9 +145,12 @@ mod tests {
     #[test]
     fn host_and_shaders_lay_their_structs_out_alike() {
         let module = shader(SWEEP_WGSL);
-        let query = members!(Query: right, first, left, count, far, unused);
-        assert_eq!(layout(&module, "Query"), (size_of::<Query>() as u32, query));
+        let query = (size_of::<Query>() as u32, members!(Query: right, first, left, count, far, unused));
+        assert_eq!(layout(&module, "Query"), query);
         assert_eq!(layout(&module, "Found"), (size_of::<Found>() as u32, members!(Found: count, places)));
+        let module = shader(RAYS_WGSL);
+        assert_eq!(layout(&module, "Query"), query);
+        assert_eq!(layout(&module, "Blocks"), (size_of::<Blocks>() as u32, members!(Blocks: words)));
         let module = shader(DECIDE_WGSL);
         let question = members!(
             Question: right, left, ahead, origin, start, way, reach, dir, back, wrapped, first, count, points, legs,
@@ -139,7 +167,7 @@ mod tests {
         assert_eq!(layout(&module, "Sample"), (size_of::<Sample>() as u32, sample));
         let outcome = members!(Outcome: product, sum, least, holds, shapes);
         assert_eq!(layout(&module, "Result"), (size_of::<Outcome>() as u32, outcome));
-        for wgsl in [SWEEP_WGSL, DECIDE_WGSL] {
+        for wgsl in [SWEEP_WGSL, RAYS_WGSL, DECIDE_WGSL] {
             let module = shader(wgsl);
             let (size, span) = layout(&module, "Span");
             assert_eq!((size, &span[..2]), (size_of::<Span>() as u32, &members!(Span: first, end)[..]));
@@ -153,9 +181,12 @@ mod tests {
     #[test]
     fn host_and_shaders_agree_on_numbers() {
         assert!(SWEEP_WGSL.contains(&format!("count < {ROOM}u")));
-        for wgsl in [SWEEP_WGSL, DECIDE_WGSL] {
+        for wgsl in [SWEEP_WGSL, RAYS_WGSL, DECIDE_WGSL] {
             assert!(wgsl.contains(&format!("const PAGE: u32 = {PAGE_VERTICES}u;")));
         }
+        assert!(RAYS_WGSL.contains(&format!("const QUERIES: u32 = {}u;", TryingAll::QUERIES)));
+        assert!(RAYS_WGSL.contains(&format!("const BLOCK: u32 = {BLOCK}u;")));
+        assert!(RAYS_WGSL.contains(&format!("const BLOCKS: u32 = {BLOCKS}u;")));
         assert!(DECIDE_WGSL.contains(&format!("const NOTHING: u32 = {NOTHING:#x}u;")));
         assert!(DECIDE_WGSL.contains(&format!("const UNWRAP: u32 = {:#x}u;", UNWRAP.0)));
         assert!(DECIDE_WGSL.contains(&format!("const MARGIN: f32 = {};", 2f64.powi(-18))));

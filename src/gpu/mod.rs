@@ -19,7 +19,7 @@ pub use arithmetic::Arithmetic;
 pub use device::{Device, open_all};
 pub use drivers::driver_faults;
 pub use error::GpuError;
-pub use kernel::{DECIDE_WGSL, Deciding, Kernel, SWEEP_WGSL, Sweeping};
+pub use kernel::{DECIDE_WGSL, Deciding, Kernel, RAYS_WGSL, SWEEP_WGSL, Sweeping, TryingAll};
 pub use pass::{GpuPass, HALVES};
 pub use probe::PROBE_WGSL;
 pub use shapes::Computed;

@@ -200,7 +200,7 @@ impl<K: Kernel> GpuPass<K> {
                 let (lists, offset) = self.pages.binding(*page);
                 pass.set_bind_group(0, &buffers.bindings, &[i as u32 * SPAN_BYTES as u32]);
                 pass.set_bind_group(1, lists, &[offset]);
-                pass.dispatch_workgroups((span.end - span.start).div_ceil(self.workgroup), 1, 1);
+                pass.dispatch_workgroups((span.end - span.start).div_ceil(K::QUERIES * self.workgroup), 1, 1);
             }
         }
         let bytes = (queries.len() * size_of::<K::Found>()) as u64;

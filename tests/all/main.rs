@@ -20,6 +20,7 @@ mod live;
 mod pictures;
 mod pushed;
 mod random;
+mod rays;
 mod required;
 mod scenes;
 mod shader;

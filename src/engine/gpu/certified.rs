@@ -11,15 +11,11 @@ use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::{SettledTrace, bounds};
 
-/// What the engine is called that asks the note's question.
-pub(super) const RAYS: &str = "gpu-rays";
-
 /// Evaluates traces on a GPU, for one model.
 pub struct Gpu {
     lists: Lists,
     pass: GpuPass,
     window: usize,
-    name: &'static str,
 }
 
 impl Gpu {
@@ -43,16 +39,7 @@ impl Gpu {
         device.certify()?;
         let n = lists.model().vertices().len();
         let pass = GpuPass::new(device, lists.keys(), n, budget, tuning, wgsl)?;
-        Ok(Gpu { lists, pass, window: WINDOW, name: NAME })
-    }
-
-    /// The engine that asks the note's question: every step tries the rays of all vertices.
-    ///
-    /// # Errors
-    ///
-    /// As [`new`](Self::new).
-    pub fn rays(device: Device, model: Arc<Model>) -> Result<Self, GpuError> {
-        Ok(Gpu { name: RAYS, ..Gpu::new(device, model)?.window(1).keep_all() })
+        Ok(Gpu { lists, pass, window: WINDOW })
     }
 
     /// The same engine with windows of at most `legs` legs, at least 1.
@@ -89,7 +76,7 @@ impl Gpu {
 
 impl Engine for Gpu {
     fn name(&self) -> &'static str {
-        self.name
+        NAME
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {

@@ -6,15 +6,16 @@ mod certified;
 mod deciding;
 mod fast;
 mod finding;
+mod rays;
 mod rounds;
 
-use self::certified::RAYS;
 use self::rounds::NAME;
 use super::table::Open;
 use super::{EngineKind, Precision, Promise};
 
 pub use certified::Gpu;
 pub use fast::FastGpu;
+pub use rays::{GPU_RAYS, GpuRays};
 
 /// The product.
 pub static GPU: EngineKind = EngineKind {
@@ -31,14 +32,4 @@ pub static GPU: EngineKind = EngineKind {
             (Precision::Fast, true) => Box::new(FastGpu::new(device, model)?.window(options.window).keep_all()),
         })
     }),
-};
-
-/// The note's method as it is written, for many ropes at once: n + 1 tests a step.
-pub static GPU_RAYS: EngineKind = EngineKind {
-    name: RAYS,
-    about: "A compute shader tries every wall end in every step, the CPU pushes and pops: a measure of throughput",
-    precisions: &[Precision::Certified],
-    asks: false,
-    promise: Promise::Events,
-    open: Open::Device(|device, model, _| Ok(Box::new(Gpu::rays(device, model)?))),
 };

@@ -210,7 +210,7 @@ mod tests {
 
     use super::source::shapes;
     use super::*;
-    use crate::gpu::{DECIDE_WGSL, PROBE_WGSL, SWEEP_WGSL};
+    use crate::gpu::{DECIDE_WGSL, PROBE_WGSL, RAYS_WGSL, SWEEP_WGSL};
 
     /// A sample in which everything is nothing but these.
     fn sample(normal: f32, p: f32, offset: f32) -> Sample {
@@ -256,7 +256,7 @@ mod tests {
     #[test]
     fn the_probe_asks_for_every_shape_of_the_shaders() {
         let asked = shapes(PROBE_WGSL);
-        for (name, wgsl) in [("sweep.wgsl", SWEEP_WGSL), ("decide.wgsl", DECIDE_WGSL)] {
+        for (name, wgsl) in [("sweep.wgsl", SWEEP_WGSL), ("rays.wgsl", RAYS_WGSL), ("decide.wgsl", DECIDE_WGSL)] {
             let missing: Vec<_> = shapes(wgsl).difference(&asked).cloned().collect();
             assert!(missing.is_empty(), "probe.wgsl does not ask for these shapes of {name}: {missing:#?}");
         }
@@ -279,6 +279,7 @@ mod tests {
                 "min(min(right + left, left), far)",
                 "((((a*b)+(c*d))+e)+(((f*b)+(g*d))+h))",
             ),
+            (RAYS_WGSL, "p.y + four.far;", "p.y + four.far - p.x;", "((((a*b)+(c*d))+e)-b)"),
             (DECIDE_WGSL, "return u.x * v.y - u.y * v.x;", "return u.x * v.y - u.y * v.x + 1.0;", "(((a*b)-(c*d))+e)"),
             (DECIDE_WGSL, "dot_of(p, q - p)", "dot_of(p, q + p)", "(((a-b)*((c-b)+(a-b)))+((d-e)*((f-e)+(d-e))))"),
             (DECIDE_WGSL, "kept[count] = p;", "kept[count] = p * 0.5;", "((((a-b)*c)*d)-(((e-f)*c)*g))"),
