@@ -5,10 +5,10 @@ use std::sync::Arc;
 use anyhow::anyhow;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use tautline::engine::{
-    ENGINES, Engine, EngineError, EngineKind, GPU, Opened, Options, Precision, RunsOn, WINDOW, Why, open_best,
+    ENGINES, Engine, EngineError, EngineKind, GPU, Opened, Options, Precision, RunsOn, Why, open_best,
 };
 use tautline::gpu::{AdapterChoice, Device, GpuError, driver_faults};
-use tautline::scene::{Model, alternatives};
+use tautline::scene::Model;
 
 use super::failure::Failure;
 
@@ -24,17 +24,6 @@ pub(crate) struct EngineArgs {
     /// Whether exact signs decide, or f32 alone; `fast` implies `--engine gpu` [default: certified]
     #[arg(long, value_enum, value_name = "PRECISION")]
     precision: Option<PrecisionName>,
-    /// The most steps that one query covers; no certified result depends on it. For measurements, so it is not shown:
-    /// `bench` has its own
-    #[arg(
-        long, hide = true, allow_negative_numbers = true, value_name = "N",
-        value_parser = clap::value_parser!(u32).range(1..)
-    )]
-    window: Option<u32>,
-    /// Try all wall ends in every query, not only those that the pivot sees and a rope can turn at; no certified result
-    /// depends on it
-    #[arg(long)]
-    keep_all: bool,
 }
 
 /// The engine asked for; `None` for the one that suits the machine.
@@ -93,23 +82,13 @@ impl EngineArgs {
                  certified"
             )));
         }
-        if self.keep_all && !kind.asks {
-            let asking: Vec<&str> =
-                ENGINES.iter().filter(|kind| kind.asks).map(|kind| kind.name).chain([AUTO]).collect();
-            return Err(Failure::input(anyhow!(
-                "--keep-all goes with --engine {}: the engine {} asks no queries",
-                alternatives(&asking),
-                kind.name
-            )));
-        }
         Ok(())
     }
 
     /// Opens the engine asked for, with a precision that was settled elsewhere.
     pub(crate) fn open_for(&self, precision: Precision, model: &Arc<Model>) -> Result<Opened, Failure> {
         self.check(precision)?;
-        let options =
-            Options { precision, window: self.window.map_or(WINDOW, |w| w as usize), keep_all: self.keep_all };
+        let options = Options { precision, ..Options::default() };
         let choice = self.adapter.as_deref().map_or(AdapterChoice::Best, named);
         let opened = match (self.engine.0, &self.adapter) {
             (None, None) => open_best(model.clone(), &options)?,

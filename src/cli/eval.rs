@@ -26,7 +26,7 @@ pub(crate) struct Args {
     #[arg(
         long, value_name = "FILE", requires = "scene",
         conflicts_with_all = [
-            "traces", "anchor", "events", "engine", "adapter", "precision", "window", "keep_all", "stride", "simplify",
+            "traces", "anchor", "events", "engine", "adapter", "precision", "stride", "simplify",
             "on_violation",
         ]
     )]
@@ -74,7 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let outcome = with_progress(&progress, &job, || evaluate(batches, &mut *engine, files, policy, &job, watch));
     let times = outcome.map_err(|error| violations.failure(error))?;
     violations.finish();
-    let report = account.report(&*engine, &times, start.elapsed());
+    let report = account.report(&*engine, &job, &times, start.elapsed());
     if args.json {
         return print_json(&report);
     }

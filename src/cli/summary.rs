@@ -10,7 +10,7 @@ const LABELS: usize = 10;
 
 /// A run in numbers.
 pub(super) fn table(report: &Report) -> String {
-    let Report { scene, traces, steps, still, violations, seconds, .. } = report;
+    let Report { scene, traces, steps, still, violations, seconds, tests, .. } = report;
     let tried = match scene.remaining {
         None => String::new(),
         Some(all) if all == scene.vertices => ", all of which are tried".to_owned(),
@@ -64,9 +64,10 @@ pub(super) fn table(report: &Report) -> String {
         text += &format!("  and {more} more labels\n");
     }
     let written = if seconds.write > 0.0 { format!(", writing {:.2} s", seconds.write) } else { String::new() };
+    let tests = if *tests > 0 { format!(", {} tests/s", short(report.tests_per_second)) } else { String::new() };
     text += &format!(
         "\n{:.2} s, {} steps/s\n\
-         at the same time: reading and checking {:.2} s, evaluating {:.2} s{written}\n",
+         at the same time: reading and checking {:.2} s, evaluating {:.2} s{tests}{written}\n",
         seconds.total,
         grouped(report.steps_per_second as u64),
         seconds.prepare,

@@ -20,10 +20,7 @@ pub static CPU: EngineKind = EngineKind {
     precisions: &[Precision::Certified],
     asks: true,
     promise: Promise::Events,
-    open: Open::Threads(|model, options| {
-        let engine = Cpu::new(model).window(options.window);
-        Box::new(if options.keep_all { engine.keep_all() } else { engine })
-    }),
+    open: Open::Threads(|model, options| Box::new(Cpu::new(model).window(options.window))),
 };
 
 /// After how many steps of a trace the job is told of them, so that the threads do not fight for its counter.

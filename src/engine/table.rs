@@ -17,8 +17,8 @@ pub struct EngineKind {
     pub about: &'static str,
     /// In which precisions it can be opened; none for one whose ropes are wrong by design.
     pub precisions: &'static [Precision],
-    /// Whether it asks queries, so that [`Options::window`] and [`Options::keep_all`] change how it works. What it
-    /// certifies depends on neither.
+    /// Whether it asks queries over windows, so that [`Options::window`] changes how it works. What it certifies does
+    /// not depend on it.
     pub asks: bool,
     /// What it promises where f32 does not decide alone.
     pub(super) promise: Promise,
@@ -58,13 +58,11 @@ pub struct Options {
     pub precision: Precision,
     /// The most legs that one query covers, at least 1.
     pub window: usize,
-    /// Whether all vertices are tried in every query, not only those that the pivot sees and at which ropes can turn.
-    pub keep_all: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { precision: Precision::default(), window: WINDOW, keep_all: false }
+        Options { precision: Precision::default(), window: WINDOW }
     }
 }
 

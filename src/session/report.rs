@@ -66,6 +66,10 @@ pub struct RunCost {
     pub seconds: f64,
     /// Steps a second.
     pub steps_per_second: f64,
+    /// How many wall ends were tried in all; 0 for engines that try none.
+    pub tests: u64,
+    /// How many of them a second while traces were evaluated.
+    pub tests_per_second: f64,
     /// How long it took together with the runs before.
     pub seconds_of_all_runs: f64,
     /// What the time went into.

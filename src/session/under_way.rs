@@ -236,7 +236,8 @@ impl Session {
             self.folder.note(Note::Cost { file: self.folder.file(RUN_REPORT) });
         }
         Ok(before.unwrap_or_else(|| {
-            let cost = self.cost(&state, &computed, start.elapsed(), &spent, [traces, job.steps()], engines);
+            let cost =
+                self.cost(&state, &computed, start.elapsed(), &spent, [traces, job.steps(), job.tests()], engines);
             RunReport::Run(Box::new(cost))
         }))
     }
@@ -308,7 +309,7 @@ impl Session {
         computed: &Computed,
         took: Duration,
         spent: &Spent,
-        [traces, steps]: [u64; 2],
+        [traces, steps, tests]: [u64; 3],
         engines: &[Box<dyn Engine>],
     ) -> RunCost {
         let here = Environment::here(None);
@@ -327,6 +328,8 @@ impl Session {
             steps,
             seconds,
             steps_per_second: steps as f64 / seconds,
+            tests,
+            tests_per_second: tests as f64 / spent.evaluated.max(1e-9),
             seconds_of_all_runs: state.seconds(),
             spent: SpentSeconds {
                 drawing_beside: spent.drawn,

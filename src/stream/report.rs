@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::Times;
 use super::statistics::{Counts, Lengths, Statistics};
-use crate::engine::Engine;
+use crate::engine::{Engine, Job};
 use crate::rope::{EventKind, TraceRecord};
 use crate::trace::SettledTrace;
 use crate::trade::{Terms, Trade, Traded};
@@ -64,6 +64,10 @@ pub struct Report {
     pub seconds: Seconds,
     /// Steps a second from start to end.
     pub steps_per_second: f64,
+    /// How many wall ends were tried in all; 0 for engines that try none.
+    pub tests: u64,
+    /// How many of them a second while traces were evaluated.
+    pub tests_per_second: f64,
 }
 
 /// The scene of a run.
@@ -173,6 +177,8 @@ impl Account {
             touched: Vec::new(),
             seconds: Seconds { prepare: 0.0, evaluate: 0.0, write: 0.0, total: 0.0 },
             steps_per_second: 0.0,
+            tests: 0,
+            tests_per_second: 0.0,
         };
         Account {
             labels: terms.used.scene().labels().into_iter().map(|label| label.map(str::to_owned)).collect(),
@@ -226,8 +232,8 @@ impl Account {
         }
     }
 
-    /// What the run came to: after the last traces, with how long it took, and the engine that evaluated it.
-    pub fn report(self, engine: &dyn Engine, times: &Times, total: Duration) -> Report {
+    /// What the run came to: after the last traces, with how long it took, and the engine and the job that evaluated it.
+    pub fn report(self, engine: &dyn Engine, job: &Job, times: &Times, total: Duration) -> Report {
         let Traded { jumps, crossing_traces, crossing_steps, .. } = self.traded;
         let [vertices, vertices_left] = [&self.terms.given, &self.terms.used].map(|m| m.vertices().len() as u64);
         let trade = self.terms.trade;
@@ -247,6 +253,8 @@ impl Account {
             touched,
             seconds: Seconds { prepare, evaluate, write, total },
             steps_per_second: self.report.steps as f64 / total.max(1e-9),
+            tests: job.tests(),
+            tests_per_second: job.tests() as f64 / evaluate.max(1e-9),
             ..self.report
         }
     }

@@ -144,7 +144,10 @@ fn lists_of_several_pages() {
     assert_eq!(model.vertices().len(), 20_000);
     let traces = settled(&model, &walks(&model, Walker { step: 0.8, steps: 200, seed: 2 }, 10));
     agree(&model, &traces);
-    assert_eq!(run(&mut gpu(&model, 64).keep_all(), &traces), run(&mut Reference::new(model.clone()), &traces));
+    let tuning = Tuning { queries: 64, workgroup: 64 };
+    let all = Lists::new(model.clone()).keep_all();
+    let mut engine = Gpu::with(software(), all, LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap();
+    assert_eq!(run(&mut engine, &traces), run(&mut Reference::new(model.clone()), &traces));
 }
 
 /// Lists come and go within a budget that holds a few of them only.

@@ -6,9 +6,7 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 use tautline::candidates::{Lists, Simd};
-use tautline::engine::{
-    Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Options, Promise, REFERENCE, Reference, WINDOW,
-};
+use tautline::engine::{Cpu, Engine, EngineError, FastGpu, Funnel, Gpu, Job, Promise, REFERENCE, Reference, WINDOW};
 use tautline::example::{Walker, random_walls, settled_walks};
 use tautline::geometry::{COORDINATE_MAX, COORDINATE_MIN, between, orient};
 use tautline::gpu::Device;
@@ -104,10 +102,9 @@ fn complaints(case: &Extreme) -> Vec<String> {
         compare("gpu, lists at once", &mut gpu_on(device(), Lists::new(model.clone()).after(0)));
     }
     for subject in Subject::all().iter().filter(|subject| subject.kind != &REFERENCE) {
-        let Options { window, keep_all, .. } = subject.options;
-        let is_usual = window == WINDOW && !keep_all;
-        // Rounds of one leg each take devices too long.
-        let suits = !subject.kind.needs_gpu() || suits_devices && window == WINDOW;
+        let is_usual = subject.options.window == WINDOW;
+        // Rounds of few legs each take devices too long.
+        let suits = !subject.kind.needs_gpu() || suits_devices && is_usual;
         if !suits || !is_usual && !is_short {
             continue;
         }

@@ -69,8 +69,13 @@ fn answers(wgsl: &str, len: usize, draws: &mut Draws) -> Vec<(Blocks, Vec<(usize
             triangle(pivot, pivot + 0.3 * draws.point(), pivot + 0.3 * draws.point())
         })
         .collect();
-    let query = |&[right, left, far]: &[[f32; 3]; 3]| {
-        Query { right, left, far, first: DevicePlace(first.0), count: len as u32, unused: 0 }
+    let query = |&[right, left, far]: &[[f32; 3]; 3]| Query {
+        right,
+        left,
+        far,
+        first: DevicePlace(first.0),
+        count: len as u32,
+        unused: 0,
     };
     let queries: Vec<Query> = triangles.iter().map(query).collect();
     let mut found = vec![Blocks::default(); QUERIES];

@@ -72,10 +72,11 @@ pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
         // Those of earlier runs took other seconds.
         let rate = run.traces as f64 / run.seconds;
         line(format_args!(
-            "{} on {} threads' time: {} traces/s",
+            "{} on {} threads' time: {} traces/s{}",
             duration(Duration::from_secs_f64(run.seconds)),
             run.threads,
-            short(rate)
+            short(rate),
+            if run.tests > 0 { format!(", {} tests/s", short(run.tests_per_second)) } else { String::new() }
         ));
     }
     if let Some(traded) = &summary.traded {

@@ -54,15 +54,6 @@ impl Gpu {
         self.pass.device().summary()
     }
 
-    /// The same engine, trying all vertices in every query, not only those that the pivot sees and at which ropes can
-    /// turn.
-    #[must_use]
-    pub fn keep_all(mut self) -> Self {
-        self.lists = self.lists.keep_all();
-        self.pass.forget();
-        self
-    }
-
     /// The pass that it runs.
     pub fn pass(&self) -> &GpuPass {
         &self.pass

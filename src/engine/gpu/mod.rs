@@ -25,11 +25,9 @@ pub static GPU: EngineKind = EngineKind {
     asks: true,
     promise: Promise::Events,
     open: Open::Device(|device, model, options| {
-        Ok(match (options.precision, options.keep_all) {
-            (Precision::Certified, false) => Box::new(Gpu::new(device, model)?.window(options.window)),
-            (Precision::Certified, true) => Box::new(Gpu::new(device, model)?.window(options.window).keep_all()),
-            (Precision::Fast, false) => Box::new(FastGpu::new(device, model)?.window(options.window)),
-            (Precision::Fast, true) => Box::new(FastGpu::new(device, model)?.window(options.window).keep_all()),
+        Ok(match options.precision {
+            Precision::Certified => Box::new(Gpu::new(device, model)?.window(options.window)),
+            Precision::Fast => Box::new(FastGpu::new(device, model)?.window(options.window)),
         })
     }),
 };

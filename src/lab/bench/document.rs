@@ -57,6 +57,8 @@ pub struct Line {
     pub tests_per_step: f64,
     /// How many tests fewer that is than the note's; null for engines that try no vertices.
     pub tests_avoided_per_step: Option<f64>,
+    /// How many vertices were tried a second, by the median; null for engines that try none.
+    pub tests_per_second: Option<f64>,
     /// Wraps and unwraps a step.
     pub events_per_step: f64,
     /// Wraps and unwraps a second, by the median.
@@ -116,6 +118,7 @@ impl From<&Row> for Line {
             steps_per_second: row.steps_per_second(),
             tests_per_step: row.tests_per_step,
             tests_avoided_per_step: row.tests_avoided_per_step,
+            tests_per_second: row.tests_per_second(),
             events_per_step: row.events_per_step,
             events_per_second: row.events_per_second(),
             phases: Phase::ALL.map(Phase::name).into_iter().zip(row.phases).collect(),

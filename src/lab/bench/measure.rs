@@ -110,6 +110,11 @@ impl Row {
         1e9 / self.ns_per_step.median
     }
 
+    /// Vertices tried a second, by the median; `None` for engines that try none.
+    pub fn tests_per_second(&self) -> Option<f64> {
+        self.tests_avoided_per_step.map(|_| self.tests_per_step * self.steps_per_second())
+    }
+
     /// Wraps and unwraps a second, by the median.
     pub fn events_per_second(&self) -> f64 {
         self.events_per_step * self.steps_per_second()

@@ -50,38 +50,6 @@ fn funnel_gives_the_same_taut_ropes() {
 }
 
 #[test]
-fn neither_the_window_nor_keep_all_changes_anything() {
-    let folder = Folder::floor_plan(20, 200);
-    for engine in ["cpu", "gpu --adapter software"] {
-        let usual = eval(&folder, &format!("--traces t.csv --engine {engine}"), "jsonl");
-        for window in [1, 1000] {
-            let found = eval(&folder, &format!("--traces t.csv --engine {engine} --window {window}"), "jsonl");
-            assert!(found == usual, "{engine} with --window {window}");
-        }
-        let found = eval(&folder, &format!("--traces t.csv --engine {engine} --window 1 --keep-all"), "jsonl");
-        assert!(found == usual, "{engine} with --keep-all");
-    }
-}
-
-#[test]
-fn keep_all_is_refused_where_no_queries_are_asked() {
-    let folder = Folder::floor_plan(2, 20);
-    folder.write("s.toml", "[scene]\nbuilt_in = \"rooms\"\n[walk]\nkind = \"uniform\"\nstep = 0.3\nsteps = 9\n");
-    for engine in ["reference", "funnel", "note"] {
-        let why = format!("--keep-all goes with --engine gpu, cpu or auto: the engine {engine} asks no queries");
-        folder.refused(2, &format!("eval --scene s.geojson --traces t.csv --engine {engine} --keep-all"), &[&why]);
-        folder.refused(2, &format!("study run s.toml --out s --engine {engine} --keep-all"), &[&why]);
-    }
-    assert!(!folder.path("s").exists());
-    folder.done("study run s.toml --count 20 --out s --engine cpu --keep-all");
-    folder.refused(
-        2,
-        "study resume s --engine reference --keep-all",
-        &["--keep-all goes with --engine gpu, cpu or auto"],
-    );
-}
-
-#[test]
 fn all_anchors_of_a_study_share_a_device() {
     let folder = Folder::floor_plan(2, 20);
     let walk = "[walk]\nkind = \"uniform\"\nstep = 0.3\nsteps = 30\n[run]\ntraces = 60\nblock = 10\n";

@@ -48,7 +48,9 @@ fn the_answer_is_the_same_on_all_engines_threads_and_shards() {
     let summary = json(&folder, "a/summary.json");
     assert_eq!((summary["traces"].as_u64(), summary["blocks"].as_u64()), (Some(5350), Some(22)));
     assert!(summary["events"].as_u64().unwrap() > 1000 && !summary["obstacles"].as_array().unwrap().is_empty());
-    for (out, engine) in [("reference", "reference"), ("gpu", "gpu --adapter software"), ("all", "cpu --keep-all")] {
+    for (out, engine) in
+        [("reference", "reference"), ("gpu", "gpu --adapter software"), ("all", "gpu-rays --adapter software")]
+    {
         folder.done(&format!("study run s.toml --out {out} --engine {engine}"));
         assert!(answer(&folder, out) == truth, "{engine}");
     }

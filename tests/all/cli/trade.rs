@@ -44,7 +44,7 @@ fn a_stride_is_named_and_its_jumps_are_counted() {
     }
     // Only steps that were walked as given are none of the seventh.
     assert!(other <= 7 * jumps as usize);
-    for engine in ["reference", "gpu --adapter software", "cpu --keep-all --window 3"] {
+    for engine in ["reference", "gpu --adapter software", "gpu-rays --adapter software"] {
         folder.done(&format!("{eval} --engine {engine} --out b.jsonl --events be.jsonl"));
         assert!(folder.read("a.jsonl") == folder.read("b.jsonl"), "{engine}");
         assert!(folder.read("ae.jsonl") == folder.read("be.jsonl"), "{engine}");

@@ -40,7 +40,6 @@ fn unknown_arguments_are_answered_with_the_known_ones() {
     let folder = Folder::hand_made();
     let engines = ["abacus", "--engine", "auto", "gpu", "cpu", "reference", "funnel", "note"];
     folder.refused(2, &format!("{EVAL} --engine abacus"), &engines);
-    folder.refused(2, &format!("{EVAL} --window 0"), &["--window", "0"]);
     folder.refused(2, &format!("{EVAL} --on-violation ignore"), &["ignore", "error", "flag"]);
     folder.refused(
         2,

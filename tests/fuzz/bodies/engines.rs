@@ -56,7 +56,7 @@ pub(super) fn gpu(input: &[u8]) {
     let gpu = Gpu::with(DEVICE.clone(), lists, LISTS_BUDGET, DEVICE.tuning(), SWEEP_WGSL);
     let mut gpu = gpu.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(run(&mut gpu, &traces), truth);
-    assert_eq!(run(&mut gpu.keep_all().window(2), &traces), truth);
+    assert_eq!(run(&mut gpu.window(2), &traces), truth);
     for kind in ENGINES.into_iter().filter(|kind| kind.needs_gpu()) {
         for &precision in kind.precisions {
             keeps_promise(kind, Some(DEVICE.clone()), precision, (&model, &traces), &truth);
