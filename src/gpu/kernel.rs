@@ -64,6 +64,11 @@ impl Kernel for Sweeping {
 #[derive(Debug, Clone, Copy)]
 pub struct TryingAll;
 
+impl TryingAll {
+    /// How many products and sums a test is: two of each for each of three half-planes.
+    pub const OPERATIONS: u32 = 12;
+}
+
 impl Kernel for TryingAll {
     type Query = Query;
     type Found = Blocks;
@@ -109,6 +114,7 @@ mod tests {
     use super::super::buffers::PAGE_BYTES;
     use super::super::pages::PAGE_VERTICES;
     use super::super::pass::Span;
+    use super::super::peak::PEAK_WGSL;
     use super::super::probe::PROBE_WGSL;
     use super::super::sample::Sample;
     use super::*;
@@ -130,7 +136,7 @@ mod tests {
     #[test]
     fn the_shaders_are_valid() {
         use naga::valid::{Capabilities, ValidationFlags, Validator};
-        for wgsl in [SWEEP_WGSL, RAYS_WGSL, DECIDE_WGSL, PROBE_WGSL] {
+        for wgsl in [SWEEP_WGSL, RAYS_WGSL, DECIDE_WGSL, PROBE_WGSL, PEAK_WGSL] {
             Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&shader(wgsl)).unwrap();
         }
     }

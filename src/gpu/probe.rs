@@ -1,11 +1,9 @@
 //! Asking a device what it makes of f32.
 
-use std::sync::{Arc, OnceLock, mpsc};
-
-use wgpu::{BufferUsages, PollType};
+use std::sync::{Arc, OnceLock};
 
 use super::arithmetic::{Arithmetic, Outcome};
-use super::buffers::{PATIENCE, binding, buffer};
+use super::once::Once;
 use super::sample::{Sample, samples};
 use super::{Device, GpuError};
 
@@ -61,60 +59,7 @@ impl Device {
 }
 
 fn run(opened: &Device, wgsl: &str, samples: &[Sample]) -> Result<Vec<Outcome>, GpuError> {
-    let Device { device, queue, .. } = opened;
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("probe"),
-        entries: &[
-            binding(0, wgpu::BufferBindingType::Storage { read_only: true }, false),
-            binding(1, wgpu::BufferBindingType::Storage { read_only: false }, false),
-        ],
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("probe"),
-        layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("probe"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        })),
-        module: &device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("probe"),
-            source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-        }),
-        entry_point: Some("probe"),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    });
-    let bytes = samples.len() * size_of::<Outcome>();
-    let asked = buffer(device, "samples", size_of_val(samples), BufferUsages::STORAGE | BufferUsages::COPY_DST);
-    let results = buffer(device, "results", bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-    let readback = buffer(device, "readback", bytes, BufferUsages::COPY_DST | BufferUsages::MAP_READ);
-    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("probe"),
-        layout: &layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: asked.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: results.as_entire_binding() },
-        ],
-    });
-    opened.check()?;
-    queue.write_buffer(&asked, 0, bytemuck::cast_slice(samples));
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("probe") });
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &bindings, &[]);
-        pass.dispatch_workgroups((samples.len() as u32).div_ceil(WORKGROUP), 1, 1);
-    }
-    encoder.copy_buffer_to_buffer(&results, 0, &readback, 0, bytes as u64);
-    let (sender, mapped) = mpsc::sync_channel(1);
-    encoder.map_buffer_on_submit(&readback, wgpu::MapMode::Read, .., move |result| {
-        let _ = sender.send(result);
-    });
-    let submission = queue.submit([encoder.finish()]);
-    let wait = PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
-    device.poll(wait).map_err(|e| opened.failed(e))?;
-    opened.check()?;
-    mapped.recv().map_err(|e| opened.failed(e))?.map_err(|e| opened.failed(e))?;
-    let view = readback.get_mapped_range(..).map_err(|e| opened.failed(e))?;
-    Ok(bytemuck::pod_collect_to_vec(&view[..]))
+    let gives = samples.len() * size_of::<Outcome>();
+    let probe = Once::new(opened, "probe", wgsl, size_of_val(samples), gives)?;
+    probe.run(bytemuck::cast_slice(samples), (samples.len() as u32).div_ceil(WORKGROUP))
 }

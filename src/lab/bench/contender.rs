@@ -48,7 +48,7 @@ pub(in crate::lab) const GPU: Contender = usual(&engine::GPU, "windows");
 pub(in crate::lab) const CPU: Contender = usual(&engine::CPU, "windows");
 
 /// The note's method as it is written: one test a vertex and step.
-const GPU_RAYS: Contender = usual(&engine::GPU_RAYS, "all vertices");
+pub(in crate::lab) const GPU_RAYS: Contender = usual(&engine::GPU_RAYS, "all vertices");
 
 /// The product in a hurry.
 pub(in crate::lab) const FAST: Contender =

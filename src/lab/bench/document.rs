@@ -59,6 +59,9 @@ pub struct Line {
     pub tests_avoided_per_step: Option<f64>,
     /// How many vertices were tried a second, by the median; null for engines that try none.
     pub tests_per_second: Option<f64>,
+    /// Of `gpu-rays`, which share the products and sums of its tests are of those that the device does in a kernel of
+    /// nothing else; null for others.
+    pub share_of_peak: Option<f64>,
     /// Wraps and unwraps a step.
     pub events_per_step: f64,
     /// Wraps and unwraps a second, by the median.
@@ -119,6 +122,7 @@ impl From<&Row> for Line {
             tests_per_step: row.tests_per_step,
             tests_avoided_per_step: row.tests_avoided_per_step,
             tests_per_second: row.tests_per_second(),
+            share_of_peak: row.share_of_peak(),
             events_per_step: row.events_per_step,
             events_per_second: row.events_per_second(),
             phases: Phase::ALL.map(Phase::name).into_iter().zip(row.phases).collect(),

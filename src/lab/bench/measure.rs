@@ -6,12 +6,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::agreement::Agreement;
-use super::contender::{CPU, Contender, Gear};
+use super::contender::{CPU, Contender, GPU_RAYS, Gear};
 use super::runner::Runner;
 use super::setting::Work;
 use super::{BenchError, Setting};
 use crate::engine::{Cpu, Engine, EngineError, Job, Phase};
-use crate::gpu::Device;
+use crate::gpu::{Device, TryingAll};
 use crate::lab::Spread;
 use crate::trace::SettledTrace;
 
@@ -62,6 +62,9 @@ pub struct Row {
     pub ns_per_step: Spread,
     /// How many vertices were tried a step; 0 for engines that try none.
     pub tests_per_step: f64,
+    /// How many products and sums of f32 the device does a second in a kernel of nothing else; known for `gpu-rays`, of
+    /// which the tests are counted against that.
+    pub peak: Option<f64>,
     /// The note's n + 1 tests a step less those done; below 0 for engines that do more. `None` for engines that try no
     /// vertices.
     pub tests_avoided_per_step: Option<f64>,
@@ -113,6 +116,11 @@ impl Row {
     /// Vertices tried a second, by the median; `None` for engines that try none.
     pub fn tests_per_second(&self) -> Option<f64> {
         self.tests_avoided_per_step.map(|_| self.tests_per_step * self.steps_per_second())
+    }
+
+    /// Which share of the [`peak`](Self::peak) the tests are, by the median.
+    pub fn share_of_peak(&self) -> Option<f64> {
+        Some(self.tests_per_second()? * f64::from(TryingAll::OPERATIONS) / self.peak?)
     }
 
     /// Wraps and unwraps a second, by the median.
@@ -176,10 +184,13 @@ pub fn measure(
         lane.time_phases()?;
     }
     let baseline = lanes.iter().find(|lane| lane.runner.contender.is_baseline()).map(|lane| lane.ns.clone());
-    Ok(Measured {
-        rows: lanes.iter().filter_map(|lane| lane.row(work, baseline.as_deref())).collect(),
-        skipped: skipped.into_iter().map(|(c, why)| Skipped { contender: c.name(), why }).collect(),
-    })
+    let mut rows: Vec<Row> = lanes.iter().filter_map(|lane| lane.row(work, baseline.as_deref())).collect();
+    if let Some(row) = rows.iter_mut().find(|row| row.contender.engine == GPU_RAYS.engine)
+        && let Some(device) = &gear.device
+    {
+        row.peak = Some(device.peak().map_err(EngineError::from)?);
+    }
+    Ok(Measured { rows, skipped: skipped.into_iter().map(|(c, why)| Skipped { contender: c.name(), why }).collect() })
 }
 
 /// Measures `contenders` on each of `settings`, one after the other. `watch` hears of each setting before its walks are
@@ -280,6 +291,7 @@ impl<'w> Lane<'w> {
             steps: self.runner.steps_a_trace(),
             ns_per_step,
             tests_per_step,
+            peak: None,
             tests_avoided_per_step: (self.tests > 0).then(|| (n + 1) as f64 - tests_per_step),
             events_per_step: self.events as f64 / self.runner.steps_once() as f64,
             phases: self.phases,

@@ -6,6 +6,7 @@ use super::measure::{Measured, Plan, Row};
 use super::setting::{Setting, Sweep};
 use crate::engine::Phase;
 use crate::environment::Environment;
+use crate::gpu::TryingAll;
 use crate::lab::surroundings::head;
 use crate::words::{NONE, aligned, counted, grouped, short};
 
@@ -65,6 +66,19 @@ fn side_by_side(setting: &Setting, rows: &[Row]) -> String {
         let wrong = row.wrong_ropes.map_or(NONE.to_owned(), |w| grouped(w as u64));
         [tests, avoided, tested, short(row.events_per_step), rate(row.events_per_second()), wrong]
     });
+    for row in rows {
+        if let (Some(peak), Some(tests), Some(share)) = (row.peak, row.tests_per_second(), row.share_of_peak()) {
+            let operations = TryingAll::OPERATIONS;
+            text += &format!(
+                "\n{}: {} tests/s of {operations} products and sums are {:.0} % of the {}/s that the adapter does in a \
+                 kernel of nothing else\n",
+                row.contender.engine.name,
+                short(tests),
+                100.0 * share,
+                short(peak)
+            );
+        }
+    }
     let timed: Vec<Row> = rows.iter().filter(|row| row.phases.iter().any(|ns| *ns > 0.0)).cloned().collect();
     if !timed.is_empty() {
         text += "\nns/step in each phase, summed over threads\n";
