@@ -17,16 +17,18 @@ True
 """
 
 from ._errors import EngineError, InputError, ReadError, StudyError, TautropeError, ViolationError, WriteError
-from ._live import LiveRope
+from ._live import Event, LiveRope
 from ._ropes import Ropes
-from ._scene import Scene
-from ._study import Answer, Study
+from ._scene import Scene, Violation
+from ._study import Answer, Estimate, Study
 from ._table import Table
 from ._tautrope import __version__
 
 __all__ = [
     "Answer",
     "EngineError",
+    "Estimate",
+    "Event",
     "InputError",
     "LiveRope",
     "ReadError",
@@ -36,6 +38,7 @@ __all__ = [
     "StudyError",
     "Table",
     "TautropeError",
+    "Violation",
     "ViolationError",
     "WriteError",
     "__version__",

@@ -57,7 +57,8 @@ fn batches<C: Columns, R>(
     push: impl Fn(&mut C, R),
 ) -> (SchemaRef, Vec<RecordBatch>) {
     let schema = Arc::new(Schema::new(columns.fields()));
-    let batch = |columns: &mut C| RecordBatch::try_new(schema.clone(), columns.take()).expect("columns fit their fields");
+    let batch =
+        |columns: &mut C| RecordBatch::try_new(schema.clone(), columns.take()).expect("columns fit their fields");
     let mut batches = Vec::new();
     for row in rows {
         push(&mut columns, row);
