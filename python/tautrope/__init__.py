@@ -16,6 +16,9 @@ for thousands to millions of traces at once, and exactly.
 True
 """
 
+import os as _os
+import sys as _sys
+
 from ._errors import EngineError, InputError, ReadError, StudyError, TautropeError, ViolationError, WriteError
 from ._live import Event, LiveRope
 from ._ropes import Ropes
@@ -43,3 +46,8 @@ __all__ = [
     "WriteError",
     "__version__",
 ]
+
+# As the program does: keeps Mesa's Vulkan layer that sorts devices by window system from complaining on stderr where there
+# is none. It has nothing to add here.
+if _sys.platform == "linux" and "XDG_RUNTIME_DIR" not in _os.environ:
+    _os.environ.setdefault("NODEVICE_SELECT", "1")

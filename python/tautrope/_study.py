@@ -49,7 +49,8 @@ class Estimate(NamedTuple):
 class Study:
     """Very many random walks in a scene, and what their ropes are like on the whole.
 
-    A plan has these sections, of which only ``scene`` and ``walk`` are needed (docs/studies.md explains all keys):
+    A plan has these sections, of which only ``scene`` and ``walk`` are needed (docs/studies.md explains all keys, and
+    ``Study(...).plan`` shows them with what they are if left out):
 
     - ``scene``: ``{"built_in": "rooms"}`` or ``{"file": "plan.svg"}``, with ``anchor`` if the file marks none
     - ``walk``: ``{"kind": ..., "step": length of a step, "steps": how many}``. Kinds are ``uniform`` (any direction),

@@ -16,11 +16,8 @@ use super::{SettledTrace, Trace, Violation, ViolationKind};
 use crate::geometry::{between, check_points, higher, lower, opposite, orient, same_side};
 use crate::scene::Model;
 
-/// How many steps share one look at the walls. Most looks find none; one that does is followed by looks for fewer steps.
+/// How many steps share one look at the walls. Most looks find none; one that does is followed by a look for each step.
 const STEPS_PER_LOOK: usize = 16;
-
-/// Into how many looks one is split that finds walls.
-const SPLIT: usize = 4;
 
 /// Checks `trace` against the model's walls and settles on which side it passes the walls that it touches.
 ///
@@ -103,7 +100,13 @@ impl Layout {
         let mut layout = Layout::start(model, anchor, points[0]);
         let mut from = anchor;
         for (block, first) in points.chunks(STEPS_PER_LOOK).zip((0..).step_by(STEPS_PER_LOOK)) {
-            layout.steps(model, trace, first, from, block);
+            let (low, high) = block.iter().fold((from, from), |(low, high), &p| (lower(low, p), higher(high, p)));
+            if !model.index().is_free(low, high) {
+                for (&to, step) in block.iter().zip(first..) {
+                    layout.step(model, trace, step, [from, to]);
+                    from = to;
+                }
+            }
             from = block[block.len() - 1];
         }
         layout
@@ -119,22 +122,6 @@ impl Layout {
             }
         }
         layout
-    }
-
-    /// Looks at the steps from `from` through some points, the first of which is step `first`.
-    fn steps(&mut self, model: &Model, trace: &Trace, first: usize, mut from: DVec2, points: &[DVec2]) {
-        if let [to] = *points {
-            return self.step(model, trace, first, [from, to]);
-        }
-        let (low, high) = points.iter().fold((from, from), |(low, high), &p| (lower(low, p), higher(high, p)));
-        if model.index().is_free(low, high) {
-            return;
-        }
-        let size = points.len().div_ceil(SPLIT);
-        for (part, first) in points.chunks(size).zip((first..).step_by(size)) {
-            self.steps(model, trace, first, from, part);
-            from = part[part.len() - 1];
-        }
     }
 
     /// Looks at one step.
