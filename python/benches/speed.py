@@ -42,8 +42,8 @@ def by_files(program: str, scene: Path, walks: np.ndarray[Any, Any], folder: Pat
     count, points, _ = walks.shape
     columns = {"trace": np.repeat(np.arange(count), points), "x": walks[:, :, 0].ravel(), "y": walks[:, :, 1].ravel()}
     pyarrow.parquet.write_table(pyarrow.table(columns), folder / "walks.parquet")
-    files = ["--scene", scene, "--traces", folder / "walks.parquet", "--out", folder / "ropes.parquet"]
-    subprocess.run([program, "eval", "--engine", "cpu", *files], check=True, capture_output=True)
+    files: list[str | Path] = ["--traces", folder / "walks.parquet", "--out", folder / "ropes.parquet"]
+    subprocess.run([program, "eval", "--engine", "cpu", "--scene", scene, *files], check=True, capture_output=True)
     return pyarrow.parquet.read_table(folder / "ropes.parquet")
 
 

@@ -47,7 +47,7 @@ __all__ = [
     "__version__",
 ]
 
-# As the program does: keeps Mesa's Vulkan layer that sorts devices by window system from complaining on stderr where there
-# is none. It has nothing to add here.
+# As the program does: keeps Mesa's Vulkan layer that sorts devices by window system from complaining on stderr where
+# there is none. It has nothing to add here.
 if _sys.platform == "linux" and "XDG_RUNTIME_DIR" not in _os.environ:
     _os.environ.setdefault("NODEVICE_SELECT", "1")

@@ -37,8 +37,8 @@ pub fn result_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec
     batches(ResultColumns::new(labels), records.iter(), |columns, record| columns.push(y_down, record, labels))
 }
 
-/// Events as tables in memory, one row an event: the columns, and the rows in batches, none if there are no events. They
-/// are those of [`write_events`](super::write_events) to a Parquet file. O(events).
+/// Events as tables in memory, one row an event: the columns, and the rows in batches, none if there are no events.
+/// They are those of [`write_events`](super::write_events) to a Parquet file. O(events).
 ///
 /// # Panics
 ///
