@@ -64,8 +64,8 @@ cargo fmt --check
 cargo fmt --check --manifest-path tests/fuzz/Cargo.toml
 say "lints"
 cargo clippy --release --all-targets --quiet -- -D warnings
-say "lints of the build without what one format or pictures alone need"
-cargo clippy --release --no-default-features --quiet -- -D warnings
+say "lints of the program without what one format or pictures alone need"
+cargo clippy --release --no-default-features --features cli --quiet -- -D warnings
 say "vector code"
 tests/vectors.sh
 say "documentation"
@@ -92,5 +92,7 @@ say "a trace that plays in a browser"
 tests/animation.sh
 say "kills at random system calls, and a full disk"
 tests/faults.sh 12
+say "the Python package"
+tests/python.sh
 say "one study over many machines: Slurm and Dask"
 tests/cluster.sh

@@ -10,7 +10,6 @@ mod scene;
 mod stored;
 mod study;
 mod table;
-mod tables;
 mod traces;
 
 use pyo3::prelude::*;

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
 use tautline::engine::Engine;
-use tautline::output::{write_events, write_results};
+use tautline::output::{event_batches, result_batches, write_events, write_results};
 use tautline::picture::{Drawing, Theme};
 use tautline::rope::{TraceRecord, replay};
 use tautline::scene::Model;
@@ -21,7 +21,6 @@ use crate::fault::Fault;
 use crate::scene::{Scene, settle_all};
 use crate::stored::{Pickled, Stored};
 use crate::table::{Table, pairs};
-use crate::tables;
 
 /// The most points that are evaluated at once.
 const POINTS: usize = 1 << 25;
@@ -72,7 +71,7 @@ impl Ropes {
         let mut ropes =
             Ropes { model: model.clone(), engine: on, records, ends, settled: Some(settled), results: OnceLock::new() };
         if !keep {
-            ropes.results = OnceLock::from(tables::results(model, &ropes.records)?);
+            ropes.results = OnceLock::from(Table::of(result_batches(model.scene(), &ropes.records)));
             ropes.records.iter_mut().for_each(|record| record.events = Vec::new());
             ropes.settled = None;
         }
@@ -101,14 +100,14 @@ impl Ropes {
         if let Some(table) = self.results.get() {
             return Ok(table.clone());
         }
-        let table = py.detach(|| tables::results(&self.model, &self.records))?;
+        let table = py.detach(|| Table::of(result_batches(self.model.scene(), &self.records)));
         Ok(self.results.get_or_init(|| table).clone())
     }
 
     /// One row an event.
     fn events(&self, py: Python<'_>) -> PyResult<Table> {
         self.settled()?;
-        Ok(py.detach(|| tables::events(&self.model, &self.records))?)
+        Ok(py.detach(|| Table::of(event_batches(self.model.scene(), &self.records))))
     }
 
     /// The rope's length after each step: offsets, and all lengths.

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::fs::File;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
@@ -11,7 +10,7 @@ use arrow_array::types::{Float64Type, UInt32Type, UInt64Type};
 use arrow_array::{Array, ArrayRef, ArrowPrimitiveType, RecordBatch, RecordBatchIterator, RecordBatchOptions};
 use arrow_ipc::reader::StreamReader;
 use arrow_ipc::writer::StreamWriter;
-use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
+use arrow_schema::{ArrowError, DataType, SchemaRef};
 use numpy::{Element, PyArray1, PyArrayMethods};
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use pyo3::prelude::*;
@@ -28,14 +27,8 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    pub(crate) fn new(fields: Vec<Field>) -> Self {
-        Table { schema: Arc::new(Schema::new(fields)), batches: Vec::new() }
-    }
-
-    /// Adds rows.
-    pub(crate) fn push(&mut self, columns: Vec<ArrayRef>) -> Result<(), Fault> {
-        self.batches.push(RecordBatch::try_new(self.schema.clone(), columns).map_err(wrong)?);
-        Ok(())
+    pub(crate) fn of((schema, batches): (SchemaRef, Vec<RecordBatch>)) -> Self {
+        Table { schema, batches }
     }
 
     pub(crate) fn ipc(&self) -> Result<Vec<u8>, Fault> {

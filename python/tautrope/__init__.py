@@ -16,17 +16,22 @@ for thousands to millions of traces at once, and exactly.
 True
 """
 
+import os as _os
+import sys as _sys
+
 from ._errors import EngineError, InputError, ReadError, StudyError, TautropeError, ViolationError, WriteError
-from ._live import LiveRope
+from ._live import Event, LiveRope
 from ._ropes import Ropes
-from ._scene import Scene
-from ._study import Answer, Study
+from ._scene import Scene, Violation
+from ._study import Answer, Estimate, Study
 from ._table import Table
 from ._tautrope import __version__
 
 __all__ = [
     "Answer",
     "EngineError",
+    "Estimate",
+    "Event",
     "InputError",
     "LiveRope",
     "ReadError",
@@ -36,7 +41,13 @@ __all__ = [
     "StudyError",
     "Table",
     "TautropeError",
+    "Violation",
     "ViolationError",
     "WriteError",
     "__version__",
 ]
+
+# As the program does: keeps Mesa's Vulkan layer that sorts devices by window system from complaining on stderr where
+# there is none. It has nothing to add here.
+if _sys.platform == "linux" and "XDG_RUNTIME_DIR" not in _os.environ:
+    _os.environ.setdefault("NODEVICE_SELECT", "1")

@@ -49,7 +49,8 @@ class Estimate(NamedTuple):
 class Study:
     """Very many random walks in a scene, and what their ropes are like on the whole.
 
-    A plan has these sections, of which only ``scene`` and ``walk`` are needed (docs/studies.md explains all keys):
+    A plan has these sections, of which only ``scene`` and ``walk`` are needed (docs/studies.md explains all keys, and
+    ``Study(...).plan`` shows them with what they are if left out):
 
     - ``scene``: ``{"built_in": "rooms"}`` or ``{"file": "plan.svg"}``, with ``anchor`` if the file marks none
     - ``walk``: ``{"kind": ..., "step": length of a step, "steps": how many}``. Kinds are ``uniform`` (any direction),
@@ -240,16 +241,25 @@ class Answer:
             raise InputError(f"no quantile {share} is in the summary; there are {', '.join(map(str, found))}")
         return _estimate(found[share])
 
-    def difference(self, other: Answer, name: str = "max_length") -> Estimate:
-        """By how much the mean of this answer is above that of another, with an interval.
+    def difference(self, other: Answer, name: str = "max_length", share: float | None = None) -> Estimate:
+        """By how much the mean of this answer is above that of another, or with a ``share`` that quantile, with an
+        interval.
 
-        It takes both for independent: give the studies different seeds. 0 outside of the interval means that they
-        differ.
+        ``a.difference(b, "max_length", 0.99)`` is how much longer a tether must be at ``a`` for 99 % of the walks to
+        fit. It takes both answers for independent, so the studies must have different seeds. 0 outside of the interval
+        means that they differ.
+
+        Raises:
+            InputError: The studies have the same seed, or different confidences; there is no such quantile.
         """
-        (a, a_low, a_high), (b, b_low, b_high) = self.mean(name), other.mean(name)
+        both = [of.mean(name) if share is None else of.quantile(name, share) for of in (self, other)]
+        (a, a_low, a_high), (b, b_low, b_high) = both
         confidences = {answer.summary["study"]["tallies"]["confidence"] for answer in (self, other)}
         if len(confidences) > 1:
             raise InputError(f"the studies have different confidences: {sorted(confidences)}")
+        seeds = [answer.summary["study"]["run"]["seed"] for answer in (self, other)]
+        if seeds[0] == seeds[1]:
+            raise InputError(f"both studies have the seed {seeds[0]}; give one of them another, run={{\"seed\": ...}}")
         if a_low is None or a_high is None or b_low is None or b_high is None:
             return Estimate(a - b, None, None)
         below = ((a - a_low) ** 2 + (b_high - b) ** 2) ** 0.5

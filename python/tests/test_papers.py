@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -59,6 +60,14 @@ except ImportError as error:
 """
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert ended.stdout == "True\n"
+
+
+def test_nothing_is_said_on_stderr() -> None:
+    """Not even by the drivers that are looked for, on a machine without a window system."""
+    program = "import tautrope; s = tautrope.Scene.built_in('rooms'); print(len(s.evaluate(s.walks(3, steps=5))))"
+    bare = {name: value for name, value in os.environ.items() if name not in ("NODEVICE_SELECT", "XDG_RUNTIME_DIR")}
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env=bare)
+    assert (ended.stdout, ended.stderr) == ("3\n", "")
 
 
 def test_everything_public_is_explained() -> None:

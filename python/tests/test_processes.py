@@ -61,9 +61,14 @@ def test_ctrl_c_leaves_a_study_that_goes_on(tmp_path: Path) -> None:
 import tautrope
 study = tautrope.Study(scene={{"built_in": "rooms"}}, walk={{"kind": "uniform", "step": 0.3, "steps": 500}},
                        run={{"traces": 1_000_000}})
-print("ready", flush=True)
+ready = False
+def told(done, of):
+    global ready
+    if done > 0 and not ready:
+        ready = True
+        print("ready", flush=True)
 try:
-    study.run({str(out)!r}, progress=False)
+    study.run({str(out)!r}, progress=told)
 except KeyboardInterrupt:
     print("interrupted", flush=True)
 """

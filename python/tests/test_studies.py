@@ -186,6 +186,15 @@ def test_differences_of_anchors() -> None:
     assert near.high - near.low == pytest.approx(2 * np.hypot(*half))
     back = b.difference(a)
     assert (back.value, back.low, back.high) == (-near.value, -near.high, -near.low)
+    a_tail, b_tail = a.quantile("max_length", 0.9), b.quantile("max_length", 0.9)
+    tail = a.difference(b, share=0.9)
+    assert tail.low is not None and a_tail.low is not None and b_tail.high is not None
+    assert tail.value == a_tail.value - b_tail.value
+    assert tail.value - tail.low == pytest.approx(np.hypot(a_tail.value - a_tail.low, b_tail.high - b_tail.value))
+    with pytest.raises(InputError, match="no quantile 0.3"):
+        a.difference(b, share=0.3)
+    with pytest.raises(InputError, match="both studies have the seed 1"):
+        a.difference(longest(1, (5.0, 5.0)))
 
 
 @pytest.mark.parametrize(

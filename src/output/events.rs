@@ -101,7 +101,7 @@ impl EventWriter {
 }
 
 /// An event of a trace as rows have it.
-fn row<'e>(scene: &Scene, labels: &'e Labels, trace: u64, event: &'e Event) -> Row<'e> {
+pub(super) fn row<'e>(scene: &Scene, labels: &'e Labels, trace: u64, event: &'e Event) -> Row<'e> {
     let label = (!labels.is_empty()).then(|| labels.get(event.vertex));
     Row { trace, event, at: scene.vertices()[event.vertex as usize], y_down: scene.y_down(), label }
 }

@@ -2,8 +2,9 @@
 //!
 //! One row a trace ([`ResultWriter`]) or one row an event ([`EventWriter`]), in the format that the extension names:
 //! `.jsonl`, `.csv` or `.parquet`. All formats hold the same values and give back the same f64. The bytes depend on the
-//! records alone.
+//! records alone. [`result_batches`] and [`event_batches`] have the same rows in memory.
 
+mod batches;
 mod columns;
 mod events;
 mod labels;
@@ -21,6 +22,7 @@ mod write_error;
 use std::io::Write;
 use std::path::Path;
 
+pub use batches::{event_batches, result_batches};
 pub use events::{EventWriter, write_events};
 pub use merge::merge_results;
 pub use passing::{abandon, commit, remove_left_files};

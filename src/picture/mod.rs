@@ -19,9 +19,9 @@ mod map;
 mod page;
 mod picture_error;
 mod plane;
-#[cfg(feature = "draw-png")]
+#[cfg(feature = "png")]
 mod raster;
-#[cfg(not(feature = "draw-png"))]
+#[cfg(not(feature = "png"))]
 #[path = "no_raster.rs"]
 mod raster;
 mod ropes;

@@ -7,7 +7,7 @@ pub(super) const LARGEST: u32 = 16_384;
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
     /// The SVG is not one.
-    #[cfg(feature = "draw-png")]
+    #[cfg(feature = "png")]
     #[error("the picture cannot be read: {0}")]
     Svg(#[from] resvg::usvg::Error),
     /// It would have no pixels, or too many.
@@ -22,6 +22,6 @@ pub enum PictureError {
     #[error("the picture cannot be written as PNG: {0}")]
     Png(String),
     /// The program was built without what draws pixels.
-    #[error("this build draws no PNG: build tautline with its feature draw-png, or have the picture as .svg")]
+    #[error("this build draws no PNG: build tautline with its feature png, or have the picture as .svg")]
     Unavailable,
 }

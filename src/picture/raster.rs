@@ -14,7 +14,7 @@ use super::picture_error::{LARGEST, PictureError};
 ///
 /// # Errors
 ///
-/// Not an SVG, or a size that no picture can have; in a build without the feature `draw-png`, always.
+/// Not an SVG, or a size that no picture can have; in a build without the feature `png`, always.
 ///
 /// ```
 /// let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="4" height="2"><rect width="4" height="2"/></svg>"#;

@@ -1,0 +1,117 @@
+//! Rows in memory: what the Parquet files hold, as batches of Arrow.
+
+use std::sync::Arc;
+
+use arrow_array::RecordBatch;
+use arrow_schema::{Schema, SchemaRef};
+
+use super::columns::{EventColumns, ResultColumns};
+use super::events::row;
+use super::labels::Labels;
+use super::tables::Columns;
+use crate::rope::TraceRecord;
+use crate::scene::Scene;
+
+/// How many rows or list elements a batch has, about: offsets of lists are numbers of 32 bits.
+const BATCH: usize = 1 << 20;
+
+/// Results as tables in memory, one row a trace: the columns, and the rows in batches, none if there are no records.
+/// They are those of [`write_results`](super::write_results) to a Parquet file. O(records and their wraps).
+///
+/// ```
+/// use std::sync::Arc;
+/// use tautline::engine::{Cpu, Engine, Job};
+/// use tautline::example::{Walker, floor_plan, settled_walks};
+/// use tautline::output::result_batches;
+/// use tautline::scene::Model;
+///
+/// let model = Arc::new(Model::new(floor_plan(), None)?);
+/// let walks = settled_walks(&model, Walker { step: 0.3, steps: 50, seed: 1 }, 3);
+/// let records = Cpu::new(model.clone()).evaluate(&walks, &Job::new())?;
+/// let (schema, batches) = result_batches(model.scene(), &records);
+/// assert_eq!((schema.field(3).name().as_str(), batches[0].num_rows()), ("length", 3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn result_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec<RecordBatch>) {
+    let (y_down, labels) = (scene.y_down(), &Labels::of(scene));
+    batches(ResultColumns::new(labels), records.iter(), |columns, record| columns.push(y_down, record, labels))
+}
+
+/// Events as tables in memory, one row an event: the columns, and the rows in batches, none if there are no events.
+/// They are those of [`write_events`](super::write_events) to a Parquet file. O(events).
+///
+/// # Panics
+///
+/// If an event names a vertex that is not there.
+pub fn event_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec<RecordBatch>) {
+    let labels = &Labels::of(scene);
+    let events = records.iter().flat_map(|record| record.events.iter().map(|event| (record.trace, event)));
+    batches(EventColumns::new(labels), events, |columns, (trace, event)| {
+        columns.push(&row(scene, labels, trace, event))
+    })
+}
+
+fn batches<C: Columns, R>(
+    mut columns: C,
+    rows: impl Iterator<Item = R>,
+    push: impl Fn(&mut C, R),
+) -> (SchemaRef, Vec<RecordBatch>) {
+    let schema = Arc::new(Schema::new(columns.fields()));
+    let batch =
+        |columns: &mut C| RecordBatch::try_new(schema.clone(), columns.take()).expect("columns fit their fields");
+    let mut batches = Vec::new();
+    for row in rows {
+        push(&mut columns, row);
+        if columns.len() >= BATCH {
+            batches.push(batch(&mut columns));
+        }
+    }
+    if columns.len() > 0 {
+        batches.push(batch(&mut columns));
+    }
+    (schema, batches)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::File;
+
+    use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+
+    use super::*;
+    use crate::engine::{Cpu, Engine, Job};
+    use crate::example::{Walker, floor_plan, settled_walks};
+    use crate::output::{write_events, write_results};
+    use crate::scene::{Model, Object, Wall};
+
+    /// Holds the rows in memory to those of the file that `write` writes.
+    fn compare((schema, batches): (SchemaRef, Vec<RecordBatch>), write: impl Fn(&std::path::Path)) {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("rows.parquet");
+        write(&file);
+        let reader = ParquetRecordBatchReaderBuilder::try_new(File::open(&file).unwrap()).unwrap();
+        assert_eq!(reader.schema().fields(), schema.fields());
+        let written: Vec<RecordBatch> = reader.with_batch_size(1 << 30).build().unwrap().map(Result::unwrap).collect();
+        assert_eq!(batches, written);
+        assert_eq!(batches.len(), 1);
+    }
+
+    #[test]
+    fn rows_in_memory_are_those_of_the_files() {
+        let plan = floor_plan();
+        let wall = |i: usize| Wall { ends: plan.ends(i), object: (i % 2) as u32, reversed: false };
+        let objects = vec![Object { label: Some("door, left".to_owned()), ..Object::default() }, Object::default()];
+        let named = Scene::of(objects, (0..plan.walls().len()).map(wall)).unwrap();
+        for scene in [plan.clone(), named.with_anchor(plan.anchor().unwrap()).with_y_down()] {
+            let model = Arc::new(Model::new(scene, None).unwrap());
+            let walks = settled_walks(&model, Walker { step: 0.3, steps: 100, seed: 1 }, 20);
+            let records = Cpu::new(model.clone()).evaluate(&walks, &Job::new()).unwrap();
+            assert!(records.iter().any(|record| record.wraps.len() > 1));
+            let scene = model.scene();
+            compare(result_batches(scene, &records), |file| write_results(file, scene, &records).unwrap());
+            compare(event_batches(scene, &records), |file| write_events(file, scene, &records).unwrap());
+        }
+        let (schema, none) = result_batches(&floor_plan(), &[]);
+        assert_eq!((schema.fields().len(), none), (11, Vec::new()));
+    }
+}
