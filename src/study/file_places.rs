@@ -44,9 +44,14 @@ pub(super) fn explain(text: &str, error: &toml::de::Error) -> PlanError {
             .map(|(_, nearest)| format!("; did you mean `{nearest}`?")),
         _ => None,
     };
-    let fault = match message.contains("AnchorPlan") {
-        true => PlanFault::AnchorForm,
-        false => PlanFault::Value(format!("{message}{}", nearest.unwrap_or_default())),
+    let fault = match message {
+        _ if message.contains("AnchorPlan") => PlanFault::AnchorForm,
+        _ if message.starts_with("unknown field `sweep`") => PlanFault::Value(
+            "this file describes a sweep, which is several studies; `tautline study run` does them all, and without \
+             [sweep] it is one"
+                .to_owned(),
+        ),
+        _ => PlanFault::Value(format!("{message}{}", nearest.unwrap_or_default())),
     };
     let line = key.map(|key| line(text, key.span.start));
     PlanError { line, key: key.map(|key| key.name.clone()), ..fault.into() }
@@ -58,6 +63,11 @@ pub(super) fn line_of(text: &str, name: &str) -> Option<usize> {
     let keys = keys(text);
     let key = tables.into_iter().find_map(|name| keys.iter().find(|key| key.name == name));
     key.map(|key| line(text, key.span.start))
+}
+
+/// The names of all keys, with the tables in which they lie, in the order in which they stand.
+pub(super) fn order_of(text: &str) -> Vec<String> {
+    keys(text).into_iter().map(|key| key.name).collect()
 }
 
 /// What is said of the first number of the file that would be rounded to 0.

@@ -34,6 +34,7 @@ pub(super) use merge::Merge;
 pub use obstacles::Obstacle;
 pub use options::TallyPlan;
 pub use ropes::CommonRope;
+pub(super) use scalars::scalar_names;
 pub use scalars::{Quantile, Scalar, quantity};
 pub(super) use setting::Setting;
 pub use survival::{Survival, SurvivalPoint};

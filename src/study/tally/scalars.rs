@@ -43,6 +43,11 @@ const ALL: [Quantity; 6] = [
     Quantity { name: "unwraps", words: "unwraps", is_length: false, of: |record| count(record, EventKind::Unwrap) },
 ];
 
+/// Their names, in the order of the summary.
+pub(in crate::study) fn scalar_names() -> [&'static str; ALL.len()] {
+    ALL.map(|quantity| quantity.name)
+}
+
 /// Which quantiles are given.
 const QUANTILES: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99];
 
@@ -108,6 +113,11 @@ impl ScalarCounts {
     pub(in crate::study) fn max_length(&self) -> Moments {
         let place = ALL.iter().position(|quantity| quantity.name == MAX_LENGTH.name);
         self.moments()[place.expect("it is a scalar")]
+    }
+
+    /// Of each block, by its number: the mean of each number.
+    pub(in crate::study) fn means(&self) -> impl Iterator<Item = (u64, [f64; ALL.len()])> {
+        self.moments.iter().map(|(&block, moments)| (block, moments.map(|moments| moments.mean)))
     }
 
     /// The moments over all blocks, in their order.
