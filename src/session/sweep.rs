@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::conclude::look;
+use super::conclude::{WIDTH, look};
 use super::error::SessionError;
 use super::folder::Folder;
 use super::merge::merge;
@@ -13,6 +13,7 @@ use super::names::{STATE, STUDY, SUMMARY, SWEEP, SWEEP_CSV, SWEEP_PARQUET};
 use super::report::pretty;
 use super::sweep_record::{SweepRecord, SweptStudy};
 use crate::output::{WholeFile, WriteError, remove_left_files};
+use crate::picture::{self, PictureError};
 use crate::study::{PointAnswer, Reference, Shard, Stopped, Sweep, SweepAnswer};
 
 /// The folder of a sweep. It remembers which studies there are; each has a folder of its own in it, as one that is run
@@ -119,7 +120,8 @@ impl SweepFolder {
         })
     }
 
-    /// Writes what the studies say so far, side by side: `sweep.csv` and `sweep.parquet`.
+    /// Writes what the studies say so far, side by side: `sweep.csv`, `sweep.parquet` and, once one of them has an
+    /// answer, the picture `sweep.svg` and `sweep.png`.
     ///
     /// # Errors
     ///
@@ -128,6 +130,15 @@ impl SweepFolder {
         let answer = self.answer(base)?;
         let sheet = answer.sheet();
         [SWEEP_CSV, SWEEP_PARQUET].iter().try_for_each(|name| sheet.write(&self.path.join(name)))?;
+        if let Some(svg) = picture::sweep(&answer) {
+            self.write("sweep.svg", svg.as_bytes())?;
+            match picture::png(&svg, WIDTH) {
+                Ok(png) => self.write("sweep.png", &png)?,
+                // The SVG says the same.
+                Err(PictureError::Unavailable) => {}
+                Err(error) => return Err(SessionError::Picture { name: "sweep".to_owned(), error }),
+            }
+        }
         Ok(answer)
     }
 
