@@ -11,6 +11,7 @@ mod merge;
 mod moments;
 mod opened;
 mod order;
+mod paired;
 mod plan;
 mod plan_error;
 mod random;
@@ -47,7 +48,7 @@ pub use summary::Summary;
 pub use surroundings::anchor_warnings;
 pub(crate) use sweep::names;
 pub use sweep::{Sweep, SweepPoint, shown};
-pub use sweep_answer::{PointAnswer, Reference, ShareWithin, SweepAnswer};
+pub use sweep_answer::{PointAnswer, Reference, SweepAnswer};
 // All answers of tallies, and the plan of their options.
 pub use tally::*;
 // The plans of all kinds of walks.

@@ -32,7 +32,8 @@ impl StudyFile {
     /// A file that cannot be read or is no TOML, with the line; a key in something that is no table.
     pub fn read(path: &Path, assignments: &[Assignment]) -> Result<StudyFile, PlanError> {
         let text = read_text(path, SETTINGS_MAX)?;
-        let file = StudyFile::parse(&text, assignments).map_err(|e| e.at(path))?;
+        let in_file = |e: PlanError| if e.option.is_some() { e } else { e.at(path) };
+        let file = StudyFile::parse(&text, assignments).map_err(in_file)?;
         Ok(StudyFile { path: Some(path.to_owned()), ..file })
     }
 

@@ -72,6 +72,23 @@ impl StudyFile {
     }
 }
 
+impl StudyFile {
+    /// The JSON Schema of the file: that of a [`Plan`], and of what makes it a sweep.
+    pub fn schema() -> serde_json::Value {
+        let mut schema = Plan::schema();
+        let whole = serde_json::json!({ "type": "integer", "minimum": 0, "maximum": MOST_POINTS - 1 });
+        schema["properties"][SWEEP] = serde_json::json!({
+            "description": "Keys of the study, each with a list of values: a study for each of them. Names of keys may be \
+                written with dots, or nested as tables are.",
+            "type": "object",
+            "properties": { AGAINST: whole },
+        });
+        schema["properties"][SWEEP]["properties"][AGAINST]["description"] =
+            "The number of the study with which all are compared, counted from 0; the first without it.".into();
+        schema
+    }
+}
+
 fn at(key: &str, what: String) -> PlanError {
     PlanError::at_key(key, PlanFault::Value(what))
 }

@@ -6,12 +6,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::blocks::BlockMeans;
-use super::difference::{Blocks, Differences, paired};
+use super::difference::Differences;
 use super::estimate::Estimate;
 use super::opened::Study;
+use super::paired::{Blocks, paired};
 use super::state::{State, Stopped};
 use super::sweep::shown;
-use super::tally::Scalar;
+use super::tally::{Scalar, ShareWithin};
 
 /// What the studies of a sweep say, side by side. It holds no times and no names of machines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -48,15 +49,6 @@ pub struct PointAnswer {
     pub within: Vec<ShareWithin>,
     /// By how much the answer differs from that of the point `against`; `None` before the first block of either.
     pub differences: Option<Differences>,
-}
-
-/// A share of ropes.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ShareWithin {
-    /// The limit.
-    pub limit: f64,
-    /// The share of ropes that never were longer.
-    pub share: Estimate,
 }
 
 /// What the other points of a sweep are compared with: what one study says, block by block.

@@ -23,7 +23,7 @@ use anyhow::anyhow;
 use clap::Subcommand;
 use tautline::output::write_whole;
 use tautline::session::{RunReport, SweepRecord};
-use tautline::study::{EXAMPLE, Plan, Summary, SweepAnswer};
+use tautline::study::{EXAMPLE, StudyFile, Summary, SweepAnswer};
 
 use super::failure::Failure;
 use super::{examples, print, print_json};
@@ -105,7 +105,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Command::Replay(args) => replay::run(args),
         Command::Init(args) => init(args),
         Command::Schema(args) => print_json(&match args.of {
-            Described::Study => Plan::schema(),
+            Described::Study => StudyFile::schema(),
             Described::Summary => Summary::schema(),
             Described::Run => RunReport::schema(),
             Described::Sweep => SweepRecord::schema(),

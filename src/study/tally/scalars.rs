@@ -13,7 +13,7 @@ use super::tally::Tally;
 use super::totals::Totals;
 use super::traced::{Size, Traced};
 use crate::rope::{EventKind, TraceRecord};
-use crate::study::estimate::Estimate;
+use crate::study::estimate::{Confidence, Estimate};
 use crate::study::moments::Moments;
 use crate::study::plan_error::PlanError;
 
@@ -121,7 +121,7 @@ impl ScalarCounts {
     }
 
     /// The moments over all blocks, in their order.
-    fn moments(&self) -> [Moments; ALL.len()] {
+    pub(super) fn moments(&self) -> [Moments; ALL.len()] {
         let mut all = [Moments::default(); ALL.len()];
         for block in self.moments.values() {
             all.iter_mut().zip(block).for_each(|(all, block)| all.merge(block));
@@ -160,7 +160,13 @@ impl Tally for Scalars {
     }
 
     fn answer(&self, counts: &ScalarCounts, totals: &Totals, setting: &Setting) -> Vec<Scalar> {
-        let (traces, confidence) = (totals.traces.sum, &setting.confidence);
+        counts.answer(totals.traces.sum, &setting.confidence)
+    }
+}
+
+impl ScalarCounts {
+    /// What they say of so many traces.
+    pub(super) fn answer(&self, traces: u64, confidence: &Confidence) -> Vec<Scalar> {
         // The least number below or at which that share of them lies.
         let rank = |share: f64| ((share * traces as f64).ceil() as u64).max(1);
         let ends = QUANTILES.map(|share| (share, confidence.ranks(share, traces)));
@@ -188,7 +194,7 @@ impl Tally for Scalars {
                 quantiles: ends.map(|(share, ends)| Quantile { share, value: estimate(share, ends) }).to_vec(),
             }
         };
-        ALL.iter().zip(counts.moments()).zip(&counts.classes).map(scalar).collect()
+        ALL.iter().zip(self.moments()).zip(&self.classes).map(scalar).collect()
     }
 }
 

@@ -32,6 +32,11 @@ impl Limits {
     pub(in crate::study) fn limits(&self) -> &[f64] {
         &self.limits
     }
+
+    /// How many of the limits a rope exceeds that is at most so long.
+    pub(super) fn exceeded(&self, max_length: f64) -> usize {
+        self.limits.partition_point(|&limit| limit < max_length)
+    }
 }
 
 /// For each limit: how many ropes first became longer after so many of the times had gone by. Limits that no rope
@@ -89,7 +94,7 @@ impl Tally for Limits {
     }
 
     fn add(&self, part: &mut Self::Part, traced: &Traced<'_>) {
-        let all = self.limits.partition_point(|&limit| limit < traced.record.max_length);
+        let all = self.exceeded(traced.record.max_length);
         part.resize_with(part.len().max(all), BTreeMap::new);
         // The limits that are exceeded at some time, and the first of them that was not yet.
         let (exceeded, mut next) = (&self.limits[..all], 0);
@@ -160,6 +165,15 @@ pub struct SurvivalPoint {
     /// The step.
     pub step: u64,
     /// The share.
+    pub share: Estimate,
+}
+
+/// A share of ropes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ShareWithin {
+    /// The limit.
+    pub limit: f64,
+    /// The share of ropes that never were longer.
     pub share: Estimate,
 }
 
