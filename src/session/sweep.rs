@@ -154,8 +154,12 @@ impl SweepFolder {
         .map(|(point, _)| point.folder.as_str())
     }
 
+    /// Writes a file, whole or not at all, unless it holds that already.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), SessionError> {
         let path = self.path.join(name);
+        if fs::read(&path).is_ok_and(|there| there == bytes) {
+            return Ok(());
+        }
         let mut file = WholeFile::create(&path)?;
         file.write_all(bytes).map_err(|cause| WriteError::Io { path, cause })?;
         Ok(file.finish_durably()?)
@@ -189,16 +193,34 @@ pub fn merge_sweep(
     if parts.iter().any(|part| part.canonicalize().is_ok_and(|part| out.canonicalize().is_ok_and(|out| part == out))) {
         return Err(SessionError::IsShard { folder: out.to_owned() });
     }
+    let [is_new, is_made] = [!SweepFolder::is_at(out), !out.exists()];
     let sweep = SweepFolder { path: out.to_owned(), record }.begun(false)?;
+    let merged = merge_points(&sweep, parts, is_partial, base, &mut made);
+    if merged.is_err() && is_new && sweep.points().all(|(folder, _)| !folder.exists()) {
+        // Nothing came of it.
+        let _ = fs::remove_file(out.join(SWEEP));
+        let _ = if is_made { fs::remove_dir(out) } else { Ok(()) };
+    }
+    merged?;
+    let answer = sweep.conclude(base)?;
+    Ok((sweep, answer))
+}
+
+fn merge_points(
+    sweep: &SweepFolder,
+    parts: &[PathBuf],
+    is_partial: bool,
+    base: Option<&Path>,
+    made: &mut impl FnMut(&Arc<Folder>),
+) -> Result<(), SessionError> {
     for (folder, point) in sweep.points() {
         let own: Vec<PathBuf> = parts.iter().map(|part| part.join(&point.folder)).collect();
         // Of a study that no part has begun there is nothing to say yet.
         if is_partial && !own.iter().any(|part| part.join(STATE).exists()) {
             continue;
         }
-        let (session, report) = merge(&own, is_partial, base, &folder, &mut made)?;
+        let (session, report) = merge(&own, is_partial, base, &folder, &mut *made)?;
         session.conclude(&report)?;
     }
-    let answer = sweep.conclude(base)?;
-    Ok((sweep, answer))
+    Ok(())
 }

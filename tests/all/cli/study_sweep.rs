@@ -262,6 +262,7 @@ fn parts_of_a_sweep_make_a_whole() {
     );
     same(&folder, "all", "truth", 4);
     folder.refused(2, "study merge k0 k1 --out two", &["shard 2/3 is missing"]);
+    assert!(!folder.path("two").exists());
     folder.done("study merge k0 k1 --partial --out some");
     assert!(folder.text("some/point-003/summary.json").contains("\"missing\""));
     folder.done("study merge some k2 --out some-more");
