@@ -81,6 +81,27 @@ pub(super) fn assign(table: &mut Table, key: &str, value: Value) -> Result<(), P
     assign(inner, rest, value).map_err(|error| PlanError { key: Some(key.to_owned()), ..error })
 }
 
+/// Has keys with dots in their names be keys in tables, as they are without quotes: a table that is written so can be
+/// assigned to.
+///
+/// # Errors
+///
+/// A key that is there in both forms, or in something that is no table.
+pub(super) fn nested(table: Table) -> Result<Table, PlanError> {
+    let mut whole = Table::new();
+    let (dotted, plain): (Vec<_>, Vec<_>) = table.into_iter().partition(|(key, _)| key.contains('.'));
+    whole.extend(plain);
+    for (key, value) in dotted {
+        let (outer, last) = key.rsplit_once('.').unwrap_or_default();
+        let outer = outer.split('.').try_fold(&whole, |table, part| table.get(part)?.as_table());
+        if outer.is_some_and(|outer| outer.contains_key(last)) {
+            return Err(PlanError::at_key(&key, PlanFault::Value("it is there twice".to_owned())));
+        }
+        assign(&mut whole, &key, value)?;
+    }
+    Ok(whole)
+}
+
 /// Whether two keys are one, or one of them is in the other.
 pub(super) fn covers(one: &str, other: &str) -> bool {
     let is_in = |inner: &str, outer: &str| inner.strip_prefix(outer).is_some_and(|rest| rest.starts_with('.'));
@@ -123,6 +144,10 @@ mod tests {
             assign(&mut table, key, Value::Integer(value)).unwrap();
         }
         assert_eq!(table, "a = 7\n[b]\nc = 5\nd = 3\n[e.f]\ng = 6\n".parse().unwrap());
+        let quoted: Table = "'b.c' = 5\na = 1\n[b]\nd = 3\n".parse().unwrap();
+        assert_eq!(nested(quoted).unwrap(), "a = 1\n[b]\nc = 5\nd = 3\n".parse().unwrap());
+        let twice: Table = "'b.c' = 5\n[b]\nc = 3\n".parse().unwrap();
+        assert_eq!(nested(twice).unwrap_err().what(), "b.c: it is there twice");
         let told = assign(&mut table, "b.c.x", Value::Integer(1)).unwrap_err();
         assert_eq!(told.what(), "b.c.x: it is no table here, so it has no `x`");
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::assignment::{Assignment, covers};
+use super::assignment::{Assignment, covers, nested};
 use super::file_places::{explain, line_of, vanishing};
 use super::plan::Plan;
 use super::plan_error::{PlanError, PlanFault};
@@ -13,6 +13,9 @@ use crate::read_file::{SETTINGS_MAX, read_text};
 
 /// The option by which values are given elsewhere.
 const OPTION: &str = "--set";
+
+/// The table of a file that makes it one of a sweep.
+pub(super) const SWEEP: &str = "sweep";
 
 /// A study's file, with values that were given elsewhere in place of its own.
 #[derive(Debug, Clone)]
@@ -53,6 +56,13 @@ impl StudyFile {
     /// ```
     pub fn parse(text: &str, assignments: &[Assignment]) -> Result<StudyFile, PlanError> {
         let mut table: Table = toml::from_str(text).map_err(|e| explain(text, &e))?;
+        if let Some(Value::Table(swept)) = table.get_mut(SWEEP) {
+            let within = |e: PlanError| PlanError { key: e.key.map(|key| format!("{SWEEP}.{key}")), ..e };
+            *swept = nested(std::mem::take(swept)).map_err(|e| {
+                let e = within(e);
+                PlanError { line: e.key.as_deref().and_then(|key| line_of(text, key)), ..e }
+            })?;
+        }
         for assignment in assignments {
             assignment.apply(&mut table).map_err(|e| PlanError { option: Some(OPTION), ..e })?;
         }

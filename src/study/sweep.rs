@@ -9,11 +9,8 @@ use super::assignment::{assign, covers};
 use super::file_places::order_of;
 use super::plan::Plan;
 use super::plan_error::{PlanError, PlanFault};
-use super::study_file::StudyFile;
+use super::study_file::{SWEEP, StudyFile};
 use crate::geometry::number;
-
-/// The table of a file that makes it one of a sweep.
-pub(super) const SWEEP: &str = "sweep";
 
 /// The key in it that is none of the study's: the number of the point with which all are compared.
 const AGAINST: &str = "against";

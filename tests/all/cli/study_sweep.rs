@@ -129,6 +129,9 @@ fn each_point_is_the_study_with_its_values_set() {
     let answer = json(&folder.done("study show a --json").stdout);
     assert_eq!(answer["points"][3]["values"], serde_json::json!([0.6, 0.8]));
     assert_eq!(answer["points"][3]["differences"]["errors_from"], "paired_blocks");
+    // A list that is set stands for that of the file, however that writes its name.
+    let told = folder.done("study run s.toml --dry-run --engine cpu --set sweep.walk.turn=[1.5]").stdout;
+    assert!(told.contains("2 studies, from walk.step = 0.4, walk.turn = 1.5 to walk.step = 0.6"), "{told}");
     // With another point to compare with, only the differences are others.
     folder.done("study run s.toml --out a --set sweep.against=3");
     assert_eq!(numbers(&folder, "a/sweep.csv", "length_mean_difference")[3], 0.0);
@@ -308,7 +311,8 @@ fn what_is_wrong_with_a_sweep_is_named() {
         ("scene.anchor = [[1.0, 1.0], 3]", &["line 16: sweep.scene.anchor: value 2 of 2: must be [x, y]"]),
         ("walk.step = [0.5, 0.50]", &["sweep: points 0 (walk.step = 0.5) and 1 (walk.step = 0.5) are one study"]),
         ("walk.step = [0.5]\nwalk = [{ kind = 'uniform' }]", &["line 17: duplicate key"]),
-        ("\"walk.step\" = [0.5]\nwalk.step = [0.6]", &["sweep.walk.step: walk.step is swept too"]),
+        ("\"walk.step\" = [0.5]\nwalk.step = [0.6]", &["sweep.walk.step: it is there twice"]),
+        ("\"walk\" = [{ kind = 'uniform' }]\n\"walk.step\" = [0.6]", &["sweep.walk"]),
         ("against = 0", &["line 15: sweep: it names no key"]),
         ("walk.step = [0.5]\nagainst = 1", &["line 17: sweep.against: 1 is the number of no point; they are 0 to 0"]),
         ("swepe = [1]", &["line 16: sweep.swepe: value 1 of 1: unknown field `swepe`"]),
