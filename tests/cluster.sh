@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # One study over many machines: a whole Slurm on this one, and Dask. Each case must give, byte for byte, what one run gives:
-# an array and its merge, a time limit and what is put back, a node that is killed, a worker that is killed, a stop over shards.
+# an array and its merge, a time limit and what is put back, a node that is killed, a worker that is killed, a stop over shards,
+# a sweep.
 #   tests/cluster.sh         TAUTLINE names another binary than the release build
 # Where Slurm or Dask cannot be had it says that those cases did not run, and ends with 0.
 set -euo pipefail
@@ -51,6 +52,19 @@ same() { # same CASE FOLDER TRUTH
         tail -n 5 "$work/${2%/*}"/*.log 2>/dev/null || true
     fi
 }
+same_sweep() { # same_sweep CASE FOLDER TRUTH
+    local file
+    for file in sweep.csv sweep.parquet sweep.svg point-000/summary.json point-001/summary.json point-002/summary.json; do
+        if ! cmp -s "$work/$2/$file" "$work/$3/$file"; then
+            failed=$((failed + 1))
+            say "FAILED: $1, $file"
+            tail -n 5 "$work/${2%/*}"/*.log 2>/dev/null || true
+            return
+        fi
+    done
+    passed=$((passed + 1))
+    say "$1: the same bytes"
+}
 wait_for() { # wait_for SECONDS COMMAND...
     local end=$((SECONDS + $1))
     shift
@@ -83,10 +97,12 @@ start=$(date +%s%N)
 pace=$((12000 * 1000000000 / ($(date +%s%N) - start)))
 study long $((pace * 24 / 500 * 500))
 study rule 40000 $'[until]\nrelative_error = 0.01'
+study sweep 6000 $'[sweep]\nwalk.step = [0.3, 0.4, 0.5]'
 say "one run, about $pace traces a second"
 (RAYON_NUM_THREADS=2 "$TAUTLINE" study run "$work/long.toml" --out "$work/long" --engine cpu >/dev/null 2>&1) &
 truth=$!
 "$TAUTLINE" study run "$work/rule.toml" --out "$work/rule" --engine cpu >/dev/null 2>&1
+"$TAUTLINE" study run "$work/sweep.toml" --out "$work/sweep" --engine cpu >/dev/null 2>&1
 wait "$truth"
 say "the truth is there"
 
@@ -155,6 +171,10 @@ if [ "$(id -u)" -eq 0 ] && has_slurm >/dev/null && begin_slurm >"$work/slurm.beg
     bash "$work/array.script" >/dev/null
     wait_for 60 over || true
     same "Slurm, an array and its merge" array/all short
+    write slurm sweep swept 4
+    bash "$work/swept.script" >/dev/null
+    wait_for 60 over || true
+    same_sweep "Slurm, a sweep" swept/all sweep
     bash "$work/lost.script" >/dev/null
     bash "$work/limit.script" >/dev/null
     bash "$work/stop.script" >/dev/null
@@ -196,6 +216,10 @@ if [ -n "$python" ]; then
     mkdir -p "$work/tasks" "$work/killed" "$work/enough"
     "$python" "$work/tasks.script" "tcp://127.0.0.1:$port" >"$work/tasks/tasks.log" 2>&1 || true
     same "Dask, tasks and their merge" tasks/all short
+    write dask sweep sweeps 4
+    mkdir -p "$work/sweeps"
+    "$python" "$work/sweeps.script" "tcp://127.0.0.1:$port" >"$work/sweeps/tasks.log" 2>&1 || true
+    same_sweep "Dask, a sweep" sweeps/all sweep
     write dask rule enough 8
     "$python" "$work/enough.script" "tcp://127.0.0.1:$port" >"$work/enough/tasks.log" 2>&1 || true
     same "Dask, a stop over shards" enough/all rule

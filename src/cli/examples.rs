@@ -59,6 +59,8 @@ pub(crate) const STUDY_RUN: &str = "Examples:
   tautline study run                                         the built-in example
   tautline study run mine.toml --dry-run                     is it sound, and what would it cost?
   tautline study run mine.toml --count 1000000
+  tautline study run mine.toml --set walk.step=0.5 --set scene.anchor=[2,3]
+  tautline study run mine.toml --set sweep.walk.step=[0.2,0.4,0.8]           a study for each of three steps
   tautline study run mine.toml --stride 4 --simplify 0.5     faster, and nearly right
   tautline study run mine.toml --shard 0/4 --out part0
   tautline study run mine.toml --shard 3@1-6 --out part3 --resume --wait 2h --stop-after 55m     task 3 of 1 to 6";
@@ -95,7 +97,8 @@ pub(crate) const STUDY_INIT: &str = "Examples:
 
 pub(crate) const STUDY_SCHEMA: &str = "Examples:
   tautline study schema > study.schema.json
-  tautline study schema --of summary > summary.schema.json";
+  tautline study schema --of summary > summary.schema.json
+  tautline study schema --of sweep > sweep.schema.json";
 
 #[cfg(test)]
 mod tests {

@@ -1,11 +1,18 @@
 //! A rectangle with an axis along the bottom and one along the left.
 
 use super::colour::{GRID, INK, MUTED};
+use super::label::{shortened, width};
 use super::svg::{Align, Svg};
 use super::ticks::Ticks;
 
 /// How wide pictures are, in pixels.
 pub(super) const WIDTH: f64 = 720.0;
+
+/// Between names along an axis, in pixels.
+const GAP: f64 = 8.0;
+
+/// Names are given at least so much room.
+const LEAST: f64 = 60.0;
 
 /// Where values lie along one axis.
 #[derive(Debug, Clone, Copy)]
@@ -60,6 +67,18 @@ impl Chart {
         Chart { x, y, x_ticks, y_ticks, left, right, top, bottom }
     }
 
+    /// The same with these marks along the bottom, each a value with its name, in place of round numbers: with names as
+    /// long as there is room for, and, where there are very many, evenly as many of them as have that.
+    pub(super) fn with_marks(self, marks: &[(f64, String)]) -> Self {
+        let slot = (self.right - self.left) / marks.len().max(1) as f64;
+        let cut = |(x, name): &(f64, String)| (*x, shortened(name, (slot - GAP).max(LEAST)));
+        let marks: Vec<_> = marks.iter().map(cut).collect();
+        let widest = marks.iter().map(|(_, name)| width(name, 12.0)).fold(0.0, f64::max) + GAP;
+        let every = (widest / slot).ceil().max(1.0) as usize;
+        let x_ticks = Ticks { marks: marks.into_iter().step_by(every).collect(), exponent: 0 };
+        Chart { x_ticks, ..self }
+    }
+
     /// The lines behind the marks.
     pub(super) fn grid(&self, svg: &mut Svg) {
         for (value, _) in &self.y_ticks.marks {
@@ -100,6 +119,6 @@ pub(super) fn legend(svg: &mut Svg, [mut x, y]: [f64; 2], entries: &[(String, St
     for (style, name) in entries {
         svg.line([x, y], [x + 18.0, y], style);
         svg.text([x + 24.0, y + 4.0], Align::Start, &format!("fill=\"{MUTED}\""), name);
-        x += 24.0 + super::label::width(name, 12.0) + 18.0;
+        x += 24.0 + width(name, 12.0) + 18.0;
     }
 }

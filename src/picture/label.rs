@@ -116,9 +116,29 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     ems.sum::<f64>() * size
 }
 
+/// `text` with as many of its letters as are about that wide at the usual size.
+pub(super) fn shortened(text: &str, most: f64) -> String {
+    if width(text, 12.0) <= most {
+        return text.to_owned();
+    }
+    let mut letters: Vec<char> = text.chars().collect();
+    while !letters.is_empty() && width(&letters.iter().chain(&['…']).collect::<String>(), 12.0) > most {
+        letters.pop();
+    }
+    letters.into_iter().chain(['…']).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_are_as_long_as_there_is_room_for() {
+        assert_eq!(shortened("short", 100.0), "short");
+        let long = shortened("a very long name of something", 60.0);
+        assert!(long.starts_with("a v") && long.ends_with('…') && width(&long, 12.0) <= 60.0, "{long}");
+        assert_eq!(shortened("none", 0.0), "…");
+    }
 
     #[test]
     fn numbers_show_what_is_known() {

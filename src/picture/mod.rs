@@ -27,6 +27,8 @@ mod raster;
 mod ropes;
 mod survival;
 mod svg;
+mod sweep;
+mod sweep_axis;
 mod tables;
 mod ticks;
 mod tradeoff;
@@ -43,6 +45,7 @@ pub use picture_error::PictureError;
 pub use raster::png;
 pub use ropes::ropes;
 pub use survival::survival;
+pub use sweep::sweep;
 pub use tradeoff::tradeoff;
 
 /// All pictures that there are of a study: for each the name of its file without an extension, its title, and the SVG.

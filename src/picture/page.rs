@@ -35,6 +35,7 @@ pub fn page(summary: &Summary, pictures: &[(String, String)], run: Option<&Value
     };
     section("Numbers", !summary.scalars.is_empty(), tables::scalars(summary));
     section("Pictures", !pictures.is_empty(), figures(pictures));
+    section("Anchors", summary.anchors.is_some(), tables::anchors(summary));
     section("Obstacles that ropes are wound about", !summary.obstacles.is_empty(), tables::obstacles(summary));
     section("Commonest ropes at the end", !summary.ropes.is_empty(), tables::ropes(summary));
     section("Wall ends with the longest contacts", !summary.contacts.is_empty(), tables::contacts(summary));

@@ -81,6 +81,19 @@ pub(super) fn obstacles(summary: &Summary) -> String {
     table("numbers", &head, rows) + &left_out(summary.obstacles.len(), "obstacles")
 }
 
+/// What the ropes of each anchor say, and by how much that differs from the first.
+pub(super) fn anchors(summary: &Summary) -> String {
+    let or_none = |e: Option<Estimate>| e.map_or_else(|| "–".to_owned(), |e| plain(&e));
+    let rows = summary.anchors.iter().flatten().map(|anchor| {
+        let mean = anchor.scalars.iter().find(|scalar| scalar.name == "max_length").map(|scalar| scalar.mean);
+        let differences = anchor.differences.iter().flat_map(|differences| &differences.scalars);
+        let difference = differences.filter(|difference| difference.name == "max_length").find_map(|d| d.mean);
+        vec![point(anchor.at), count(anchor.traces), or_none(mean), or_none(difference)]
+    });
+    let what = quantity("max_length");
+    table("numbers", &["anchor", "traces", &format!("mean {what}"), "difference from the first"], rows)
+}
+
 /// The commonest ropes, turn by turn.
 pub(super) fn ropes(summary: &Summary) -> String {
     let rows = summary.ropes.iter().enumerate().map(|(i, r)| {

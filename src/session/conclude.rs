@@ -12,7 +12,7 @@ use crate::picture::{self, PictureError};
 use crate::study::{Shard, State, Stopped, Study, Summary};
 
 /// How wide the pictures are as PNG, in pixels: two for each of the SVG's units.
-const WIDTH: u32 = 1600;
+pub(super) const WIDTH: u32 = 1600;
 
 impl Session {
     /// Writes the answer so far, and what it cost: `summary.json`, `run.json`, and where the study says so the pictures

@@ -46,6 +46,31 @@ pub enum SessionError {
         #[source]
         cause: io::Error,
     },
+    /// The folder is that of a sweep.
+    #[error("{0} is the folder of a sweep, which has several studies; give one of theirs, such as {0}/point-000", folder.display())]
+    IsSweep {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// There is no sweep in the folder.
+    #[error("{}: {cause}; give the folder that `tautline study run` made of a sweep", file.display())]
+    NoSweep {
+        /// The file that would remember it.
+        file: PathBuf,
+        /// Why it cannot be read.
+        #[source]
+        cause: io::Error,
+    },
+    /// The folder holds a part of another sweep.
+    #[error("{} holds another sweep than {}: {difference}", folder.display(), first.display())]
+    OtherSweep {
+        /// The folder.
+        folder: PathBuf,
+        /// That of the first part: it is there in the difference.
+        first: PathBuf,
+        /// How it differs.
+        difference: Difference,
+    },
     /// The folder does not remember its study as it was written.
     #[error(
         "{}: {}; `tautline study run` with the study's own file and this folder as --out writes it again",

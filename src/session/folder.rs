@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{Difference, Note, SessionError};
 use super::lock::Lock;
-use super::names::{LOCK, PAGE, PARTS, RUN_REPORT, STATE, STUDY, SUMMARY, TRACES};
+use super::names::{LOCK, PAGE, PARTS, RUN_REPORT, STATE, STUDY, SUMMARY, SWEEP, TRACES};
 use super::report::RunReport;
 use crate::output::{WholeFile, WriteError, remove_left_files};
 use crate::study::{Check, Plan, Shard, State, Study};
@@ -143,7 +143,10 @@ impl Folder {
     }
 
     fn no_study(&self, cause: std::io::Error) -> SessionError {
-        SessionError::NoStudy { file: self.file(STUDY), cause }
+        match self.file(SWEEP).exists() {
+            true => SessionError::IsSweep { folder: self.path.clone() },
+            false => SessionError::NoStudy { file: self.file(STUDY), cause },
+        }
     }
 
     fn remembered(&self) -> Result<Remembered, SessionError> {
@@ -214,7 +217,7 @@ impl Folder {
             };
         }
         let is_same = difference == Some(None) && remembered.is_some_and(|there| there.shard == part);
-        let there = [SUMMARY, RUN_REPORT, PAGE, TRACES, PARTS].map(|name| self.file(name));
+        let there = [SUMMARY, RUN_REPORT, PAGE, TRACES, PARTS, SWEEP].map(|name| self.file(name));
         match there.iter().find(|file| file.exists()) {
             Some(file) if !is_same => Err(SessionError::Occupied { file: file.clone() }),
             found => {
@@ -301,29 +304,29 @@ pub(super) fn check(path: &Path) -> std::io::Result<Check> {
 }
 
 /// A shard as it is written on the command line.
-mod written_shard {
+pub(super) mod written_shard {
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
 
     use crate::study::Shard;
 
-    pub(super) fn serialize<S: Serializer>(shard: &Shard, to: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(shard: &Shard, to: S) -> Result<S::Ok, S::Error> {
         to.collect_str(shard)
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Shard, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Shard, D::Error> {
         String::deserialize(from)?.parse().map_err(D::Error::custom)
     }
 }
 
 /// Whether all that differs is that there are more traces here.
-fn is_raised(there: &Plan, here: &Plan) -> bool {
+pub(super) fn is_raised(there: &Plan, here: &Plan) -> bool {
     let mut same = there.clone();
     same.run.traces = here.run.traces;
     there.run.count() < here.run.count() && difference(&same, here).is_none()
 }
 
 /// The first key in which two studies differ, with both values, whatever they write out.
-fn difference(there: &Plan, here: &Plan) -> Option<Difference> {
+pub(super) fn difference(there: &Plan, here: &Plan) -> Option<Difference> {
     fn first(name: &str, there: &serde_json::Value, here: &serde_json::Value) -> Option<Difference> {
         if let (Some(a), Some(b)) = (there.as_object(), here.as_object()) {
             let null = serde_json::Value::Null;

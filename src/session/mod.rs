@@ -38,6 +38,8 @@ mod names;
 mod report;
 mod rows;
 mod status;
+mod sweep;
+mod sweep_record;
 mod under_way;
 
 pub use conclude::{answered, is_answer, look};
@@ -46,5 +48,7 @@ pub use folder::Folder;
 pub use holder::Holder;
 pub use merge::merge;
 pub use report::{Computed, MergeCost, RunCost, RunReport, SpentSeconds, Tried};
-pub use status::{FolderStatus, Status, StudyStatus, status};
+pub use status::{FolderStatus, Status, StudyStatus, SweepStatus, status};
+pub use sweep::{SweepFolder, merge_sweep};
+pub use sweep_record::{SweepRecord, SweptStudy};
 pub use under_way::{Left, Saved, Session};

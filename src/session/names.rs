@@ -23,3 +23,12 @@ pub(super) const PARTS: &str = "traces";
 
 /// On which the lock lies. It stays there: whoever removed it could not know who waits for it.
 pub(super) const LOCK: &str = "lock";
+
+/// What the studies of a sweep are, in the folder that holds those of all of them.
+pub(super) const SWEEP: &str = "sweep.json";
+
+/// What all studies of a sweep say, side by side.
+pub(super) const SWEEP_CSV: &str = "sweep.csv";
+
+/// The same as Parquet.
+pub(super) const SWEEP_PARQUET: &str = "sweep.parquet";

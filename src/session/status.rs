@@ -9,8 +9,9 @@ use super::error::SessionError;
 use super::folder::Folder;
 use super::holder::Holder;
 use super::lease::holder;
-use super::names::STATE;
-use crate::study::{Plan, State, Stopped, as_ranges};
+use super::names::{STATE, STUDY};
+use super::sweep::SweepFolder;
+use crate::study::{Plan, Shard, State, Stopped, as_ranges};
 
 /// How far one folder is.
 #[derive(Debug, Clone, Serialize)]
@@ -48,10 +49,30 @@ pub struct StudyStatus {
     pub folders: Vec<FolderStatus>,
 }
 
+/// How far a sweep is, in one folder.
+#[derive(Debug, Clone, Serialize)]
+pub struct SweepStatus {
+    /// The folder.
+    pub folder: PathBuf,
+    /// Which part of each of its studies is in it: K/N, or K/N of blocks A..B.
+    pub shard: String,
+    /// How many of its studies have nothing left to do.
+    pub studies_done: u64,
+    /// How many of the blocks of all studies are done.
+    pub done: u64,
+    /// Of how many.
+    pub blocks: u64,
+    /// Its studies, each in its folder.
+    pub studies: Vec<FolderStatus>,
+}
+
 /// What lies in folders.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Status {
-    /// The studies in them.
+    /// The sweeps in them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sweeps: Vec<SweepStatus>,
+    /// The studies in them that are in no sweep.
     pub studies: Vec<StudyStatus>,
     /// Those that hold none, or one that cannot be read, with the reason.
     pub others: Vec<(PathBuf, String)>,
@@ -62,6 +83,16 @@ pub fn status(folders: &[PathBuf]) -> Status {
     let mut all = Status::default();
     let mut studies: BTreeMap<Option<String>, (StudyStatus, BTreeSet<u64>)> = BTreeMap::new();
     for path in folders {
+        if SweepFolder::is_at(path) {
+            match look_at_sweep(path) {
+                Ok((sweep, others)) => {
+                    all.sweeps.push(sweep);
+                    all.others.extend(others);
+                }
+                Err(error) => all.others.push((path.clone(), error.to_string())),
+            }
+            continue;
+        }
         let (plan, state, folder) = match look(path) {
             Ok(found) => found,
             Err(error) => {
@@ -112,4 +143,44 @@ fn look(path: &Path) -> Result<(Plan, Option<State>, FolderStatus), SessionError
         seconds_left: left.map(|rate| ((count - done) * u64::from(plan.run.block)) as f64 / rate),
     };
     Ok((plan, state, status))
+}
+
+/// How far a sweep is, and which of its studies' folders cannot be read.
+fn look_at_sweep(path: &Path) -> Result<(SweepStatus, Vec<(PathBuf, String)>), SessionError> {
+    let sweep = SweepFolder::open(path)?;
+    let (mut studies, mut others) = (Vec::new(), Vec::new());
+    for (folder, point) in sweep.points() {
+        if !folder.join(STUDY).exists() {
+            studies.push(not_begun(&folder, &point.study, sweep.record().shard));
+            continue;
+        }
+        match look(&folder) {
+            Ok((.., status)) => studies.push(status),
+            Err(error) => others.push((folder, error.to_string())),
+        }
+    }
+    let sum = |of: fn(&FolderStatus) -> u64| studies.iter().map(of).sum();
+    let status = SweepStatus {
+        folder: path.to_owned(),
+        shard: sweep.record().shard.to_string(),
+        studies_done: sum(|study| u64::from(study.stopped != Stopped::Unfinished)),
+        done: sum(|study| study.done),
+        blocks: sum(|study| study.blocks),
+        studies,
+    };
+    Ok((status, others))
+}
+
+/// How far a study is that has no folder yet.
+fn not_begun(folder: &Path, plan: &Plan, shard: Shard) -> FolderStatus {
+    FolderStatus {
+        folder: folder.to_owned(),
+        shard: shard.to_string(),
+        done: 0,
+        blocks: shard.count(plan.blocks()),
+        stopped: Stopped::Unfinished,
+        holder: None,
+        traces_per_second: None,
+        seconds_left: None,
+    }
 }

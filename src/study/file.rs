@@ -160,8 +160,7 @@ impl PlanError {
     pub fn in_file(self, path: &Path) -> Self {
         let text = read_text(path, SETTINGS_MAX).unwrap_or_default();
         let line = self.key.as_deref().and_then(|key| line_of(&text, key));
-        let is_placed = self.path.is_some() || self.line.is_some() || line.is_none();
-        if is_placed { self } else { PlanError { path: Some(path.into()), line, ..self } }
+        if self.is_placed() || line.is_none() { self } else { PlanError { path: Some(path.into()), line, ..self } }
     }
 }
 

@@ -44,9 +44,14 @@ pub(super) fn explain(text: &str, error: &toml::de::Error) -> PlanError {
             .map(|(_, nearest)| format!("; did you mean `{nearest}`?")),
         _ => None,
     };
-    let fault = match message.contains("AnchorPlan") {
-        true => PlanFault::AnchorForm,
-        false => PlanFault::Value(format!("{message}{}", nearest.unwrap_or_default())),
+    let fault = match message {
+        _ if message.contains("AnchorPlan") => PlanFault::AnchorForm,
+        _ if message.starts_with("unknown field `sweep`") => PlanFault::Value(
+            "this file describes a sweep, which is several studies; `tautline study run` does them all, and without \
+             [sweep] it is one"
+                .to_owned(),
+        ),
+        _ => PlanFault::Value(format!("{message}{}", nearest.unwrap_or_default())),
     };
     let line = key.map(|key| line(text, key.span.start));
     PlanError { line, key: key.map(|key| key.name.clone()), ..fault.into() }
@@ -58,6 +63,11 @@ pub(super) fn line_of(text: &str, name: &str) -> Option<usize> {
     let keys = keys(text);
     let key = tables.into_iter().find_map(|name| keys.iter().find(|key| key.name == name));
     key.map(|key| line(text, key.span.start))
+}
+
+/// The names of all keys, with the tables in which they lie, in the order in which they stand.
+pub(super) fn order_of(text: &str) -> Vec<String> {
+    keys(text).into_iter().map(|key| key.name).collect()
 }
 
 /// What is said of the first number of the file that would be rounded to 0.
@@ -90,13 +100,15 @@ fn culprit<'k>(document: &toml::Table, message: &str, keys: &'k [Key]) -> Option
         Plan::deserialize(toml::Value::Table(document.clone())).err().map(|e| e.message().to_owned())
     };
     let whole = fault(document);
+    // A field that is not known is named.
+    let unknown = message.strip_prefix("unknown field `").and_then(|rest| rest.split('`').next());
     // How surely a key is at fault: without it nothing is, or nothing but that it is missing; or another fault comes
     // first.
     let decides = |key: &Key| {
         let mut names: Vec<&str> = key.name.split('.').collect();
         let last = names.pop().unwrap_or_default();
-        if message.starts_with(&format!("unknown field `{last}`")) {
-            return Some(0);
+        if let Some(unknown) = unknown {
+            return (unknown == last).then_some(0);
         }
         let mut rest = document.clone();
         let table = names.iter().try_fold(&mut rest, |table, name| table.get_mut(*name)?.as_table_mut());
@@ -172,6 +184,7 @@ mod tests {
             (format!("{walk}step = -1.0"), "line 7: walk.step: -1 is no length"),
             (format!("{walk}step = 1.0\n[tallies]\nlimits = [1.0, 'a']"), "line 9: tallies.limits: invalid type"),
             (format!("{walk}step = 1.0\nwalk.x = 1"), "line 8: walk.walk: unknown field `walk`"),
+            (format!("{walk}step = 1.0\n[wlak]\nstep = 1.0"), "line 8: wlak: unknown field `wlak`"),
             (format!("{walk}step = 1e-400"), "line 7: walk.step: 1e-400 is too small"),
             (format!("{walk}step = 1.0 1"), "line 7: "),
             (format!("{walk}step = 1.0\nsteps = 7"), "line 8: duplicate key"),

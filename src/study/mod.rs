@@ -1,5 +1,8 @@
 //! Monte-Carlo studies: very many random traces, and what their ropes are like on the whole.
 
+mod assignment;
+mod blocks;
+mod difference;
 mod estimate;
 mod file;
 mod file_places;
@@ -8,6 +11,7 @@ mod merge;
 mod moments;
 mod opened;
 mod order;
+mod paired;
 mod plan;
 mod plan_error;
 mod random;
@@ -16,11 +20,17 @@ mod shard;
 mod state;
 mod state_error;
 mod student;
+mod study_file;
 mod summary;
 mod surroundings;
+mod sweep;
+mod sweep_answer;
+mod sweep_sheet;
 mod tally;
 mod walk;
 
+pub use assignment::Assignment;
+pub use difference::{Differences, ErrorsFrom, MeanDifference, ShareDifference};
 pub use estimate::Estimate;
 pub use file::EXAMPLE;
 pub use merge::merge;
@@ -33,8 +43,12 @@ pub(crate) use shard::as_ranges;
 pub use shard::{Shard, read_blocks};
 pub use state::{Check, Kept, Part, State, Stopped};
 pub use state_error::{StateError, StateFault};
+pub use study_file::StudyFile;
 pub use summary::Summary;
 pub use surroundings::anchor_warnings;
+pub(crate) use sweep::names;
+pub use sweep::{Sweep, SweepPoint, shown};
+pub use sweep_answer::{PointAnswer, Reference, SweepAnswer};
 // All answers of tallies, and the plan of their options.
 pub use tally::*;
 // The plans of all kinds of walks.

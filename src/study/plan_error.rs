@@ -10,10 +10,17 @@ use crate::simplify::SimplifyError;
 
 /// What is wrong with a study: where, what, and what would be right.
 #[derive(Debug, thiserror::Error)]
-#[error("{}{}", .path.as_ref().map_or(String::new(), |p| format!("{}: ", p.display())), self.what())]
+#[error(
+    "{}{}{}",
+    .path.as_ref().map_or(String::new(), |p| format!("{}: ", p.display())),
+    .option.map_or(String::new(), |option| format!("{option}: ")),
+    self.what()
+)]
 pub struct PlanError {
     /// The file, if it is one.
     pub path: Option<PathBuf>,
+    /// The option by which the key was given in place of the file's, if it was.
+    pub option: Option<&'static str>,
     /// In which of its lines, counted from 1; `None` where that is not known.
     pub line: Option<usize>,
     /// The key at fault, with the tables in which it lies: `walk.step`. `None` where it is none of the study's keys.
@@ -71,6 +78,11 @@ impl PlanError {
         self
     }
 
+    /// Whether it is known where it lies.
+    pub(super) fn is_placed(&self) -> bool {
+        self.path.is_some() || self.option.is_some() || self.line.is_some()
+    }
+
     /// The message without the file's name: the line, the key, and what is wrong.
     pub fn what(&self) -> String {
         let line = self.line.map_or(String::new(), |line| format!("line {line}: "));
@@ -82,6 +94,6 @@ impl PlanError {
 
 impl<F: Into<PlanFault>> From<F> for PlanError {
     fn from(fault: F) -> Self {
-        PlanError { path: None, line: None, key: None, fault: Box::new(fault.into()) }
+        PlanError { path: None, option: None, line: None, key: None, fault: Box::new(fault.into()) }
     }
 }

@@ -30,6 +30,8 @@ mod simulated_again;
 mod stride;
 mod study_truth;
 mod support;
+mod sweep_picture;
+mod sweep_truth;
 mod touch;
 mod trace_files;
 mod visibility;

@@ -180,6 +180,7 @@ fn answer(scene: &Scene) -> Summary {
             })
             .collect(),
         ropes,
+        anchors: None,
         contacts: near
             .iter()
             .map(|&(vertex, at)| Contact { vertex, at: at.into(), label: None, wraps: about(1.2), share: about(0.11) })
@@ -206,7 +207,7 @@ pub(crate) fn texts(svg: &str) -> Vec<String> {
 }
 
 /// Checks that no text lies outside the picture and no coordinate is not a number.
-fn check(svg: &str) {
+pub(crate) fn check(svg: &str) {
     let drawn = pixels(svg);
     assert!(drawn.pixels().iter().any(|p| p.red() < 128), "nothing is drawn");
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");

@@ -146,6 +146,20 @@ pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
         let names = if names.is_empty() { String::new() } else { format!("  round {}", names.join(", ")) };
         line(format_args!("  {turns:24}  {:>7}  {}{names}", percent(rope.share.value), shares(&rope.share)));
     }
+    for (i, anchor) in summary.anchors.iter().flatten().enumerate() {
+        if i == 0 {
+            line(format_args!(
+                "\nmean greatest rope length by anchor, and by how much it differs from the first one's"
+            ));
+        }
+        let at = format!("({}, {})", short(anchor.at[0]), short(anchor.at[1]));
+        let mean = anchor.scalars.iter().find(|scalar| scalar.name == "max_length").map(|scalar| scalar.mean);
+        let mean = mean.map_or(String::new(), |mean| format!("{:>10}  {:>24}", short(mean.value), interval(&mean)));
+        let differences = anchor.differences.iter().flat_map(|differences| &differences.scalars);
+        let difference = differences.filter(|d| d.name == "max_length").find_map(|d| d.mean);
+        let difference = difference.map_or(String::new(), |d| format!("{:>10}  ({})", short(d.value), interval(&d)));
+        line(format_args!("  {at:22}{mean}{difference}"));
+    }
     text
 }
 

@@ -1,14 +1,16 @@
 //! What a study would cost, going by its first traces.
 
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use tautline::engine::Job;
-use tautline::study::{RunError, Shard, State, Study, Summary, run};
+use tautline::study::{RunError, Shard, State, Study, Summary, Sweep, run};
 
 use super::engines::Engines;
 use crate::cli::engine::EngineArgs;
 use crate::cli::failure::Failure;
+use crate::cli::input::note;
 
 /// What the first traces came to.
 pub(super) struct Measured {
@@ -27,6 +29,28 @@ impl Measured {
         let share = study.places(part) as f64 / traces as f64;
         Some(Duration::try_from_secs_f64(took.as_secs_f64() * share).unwrap_or(Duration::MAX))
     }
+}
+
+/// Of how many studies of a sweep, evenly among all, the time is measured that all would take.
+const MEASURED: usize = 8;
+
+/// Checks all studies of a sweep, with their scenes; and, where there is an engine and a part, tells about how long
+/// that part of all would take.
+pub(super) fn check_sweep(sweep: &Sweep, base: &Path, with: Option<(&EngineArgs, Shard)>) -> Result<Duration, Failure> {
+    let all = sweep.points().len();
+    let every = all.div_ceil(MEASURED);
+    let mut measured = Duration::ZERO;
+    for (i, point) in sweep.points().iter().enumerate() {
+        let study = Study::open(point.plan.clone(), base).map_err(|e| sweep.located(e, i))?;
+        study.check_moves().map_err(|e| sweep.located(e, i))?;
+        if i == 0 {
+            study.plan().scene.file.iter().for_each(|file| note(file, study.models()[0].scene()));
+        }
+        if let Some((engine, part)) = with.filter(|_| i % every == 0) {
+            measured += measure(&study, engine, part)?.all(&study, part).unwrap_or_default();
+        }
+    }
+    Ok(measured.mul_f64(all as f64 / all.div_ceil(every) as f64))
 }
 
 /// Does the first traces of a part of a study.

@@ -5,12 +5,16 @@ mod base;
 mod engines;
 mod estimate;
 mod merge;
+mod proceed;
 mod replay;
 mod run;
+mod run_args;
 mod script;
 mod show;
 mod status;
 mod stop;
+mod sweep;
+mod sweep_table;
 mod time;
 
 use std::path::PathBuf;
@@ -18,8 +22,8 @@ use std::path::PathBuf;
 use anyhow::anyhow;
 use clap::Subcommand;
 use tautline::output::write_whole;
-use tautline::session::RunReport;
-use tautline::study::{EXAMPLE, Plan, Summary};
+use tautline::session::{RunReport, SweepRecord};
+use tautline::study::{EXAMPLE, StudyFile, Summary, SweepAnswer};
 
 use super::failure::Failure;
 use super::{examples, print, print_json};
@@ -34,10 +38,10 @@ pub(crate) struct Args {
 enum Command {
     /// Run a study, or the built-in example
     #[command(after_help = examples::STUDY_RUN)]
-    Run(run::RunArgs),
+    Run(run_args::RunArgs),
     /// Go on with a study that was stopped
     #[command(after_help = examples::STUDY_RESUME)]
-    Resume(run::ResumeArgs),
+    Resume(run_args::ResumeArgs),
     /// Put the shards of a study together
     #[command(after_help = examples::STUDY_MERGE)]
     Merge(merge::Args),
@@ -77,6 +81,10 @@ enum Described {
     Summary,
     /// What a run of it cost, run.json
     Run,
+    /// What a sweep is, sweep.json
+    Sweep,
+    /// What `study show --json` prints of a sweep
+    SweepAnswer,
 }
 
 #[derive(Debug, clap::Args)]
@@ -97,9 +105,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Command::Replay(args) => replay::run(args),
         Command::Init(args) => init(args),
         Command::Schema(args) => print_json(&match args.of {
-            Described::Study => Plan::schema(),
+            Described::Study => StudyFile::schema(),
             Described::Summary => Summary::schema(),
             Described::Run => RunReport::schema(),
+            Described::Sweep => SweepRecord::schema(),
+            Described::SweepAnswer => SweepAnswer::schema(),
         }),
     }
 }

@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use tautline::output::{folder_of, write_whole};
-use tautline::study::{Plan, Shard, Study};
+use tautline::study::{Shard, Study, StudyFile};
 
 use super::answer::duration;
-use super::estimate::measure;
+use super::estimate::{check_sweep, measure};
 use super::time::time;
 use crate::cli::engine::{EngineArgs, of_studies};
 use crate::cli::failure::Failure;
@@ -56,13 +56,10 @@ const LEAST: f64 = 60.0;
 const MOST: f64 = 1000.0;
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    let folder = folder_of(&args.file);
-    let study = Study::open(Plan::read(&args.file)?, folder).map_err(|e| e.in_file(&args.file))?;
-    study.check_moves().map_err(|e| e.in_file(&args.file))?;
-    let all = measure(&study, &args.engine, Shard::WHOLE)?.all(&study, Shard::WHOLE).unwrap_or_default();
+    let (all, blocks, has_rule) = cost(args)?;
     let parts = args.parts.unwrap_or_else(|| {
         // A part of two minutes or more is one of a minute or more on a machine twice as fast.
-        let parts = (all.as_secs_f64() / (2.0 * LEAST)).min(MOST).min(study.plan().blocks() as f64);
+        let parts = (all.as_secs_f64() / (2.0 * LEAST)).min(MOST).min(blocks as f64);
         (parts as u32).max(1)
     });
     let name = args.file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -76,9 +73,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let shown = to.display();
         return Err(Failure::input(anyhow!("cannot write {shown}: it is there already; give another name by --to")));
     }
-    let rule = match (args.scheduler, study.plan().until.relative_error) {
-        (Scheduler::Slurm, Some(_)) => include_str!("script/slurm-rule.sh"),
-        (Scheduler::Dask, Some(_)) => include_str!("script/dask-rule.py"),
+    let rule = match (args.scheduler, has_rule) {
+        (Scheduler::Slurm, true) => include_str!("script/slurm-rule.sh"),
+        (Scheduler::Dask, true) => include_str!("script/dask-rule.py"),
         _ => "",
     };
     let quote = |path: &Path| quoted(args.scheduler, path);
@@ -113,6 +110,20 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let parts = counted(parts.into(), "part", "parts");
     let (shown, command) = (to.display(), if args.scheduler == Scheduler::Dask { "python" } else { "bash" });
     print(&format!("wrote {shown}: {parts}; read it, then run it with: {command} {shown}\n"))
+}
+
+/// About how long all of it would take here, how many blocks the largest study has, and whether it may end before its
+/// last block. The parts of a sweep do all their blocks: its script merges what is whole.
+fn cost(args: &Args) -> Result<(Duration, u64, bool), Failure> {
+    let (file, folder) = (StudyFile::read(&args.file, &[])?, folder_of(&args.file));
+    if let Some(sweep) = file.sweep()? {
+        let blocks = sweep.points().iter().map(|point| point.plan.blocks()).max().unwrap_or(1);
+        return Ok((check_sweep(&sweep, folder, Some((&args.engine, Shard::WHOLE)))?, blocks, false));
+    }
+    let study = Study::open(file.plan()?, folder).map_err(|e| file.located(e))?;
+    study.check_moves().map_err(|e| file.located(e))?;
+    let all = measure(&study, &args.engine, Shard::WHOLE)?.all(&study, Shard::WHOLE).unwrap_or_default();
+    Ok((all, study.plan().blocks(), study.plan().until.relative_error.is_some()))
 }
 
 /// A path as the script's language has it.

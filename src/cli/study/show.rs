@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use tautline::session::{is_answer, look};
+use tautline::session::{SweepFolder, is_answer, look};
 
 use super::answer::{print_answer, table};
 use super::base::BaseArgs;
+use super::sweep_table;
 use crate::cli::failure::Failure;
-use crate::cli::print;
+use crate::cli::{print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -21,6 +22,10 @@ pub(crate) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    if SweepFolder::is_at(&args.folder) {
+        let answer = SweepFolder::open(&args.folder)?.answer(args.base.folder())?;
+        return if args.json { print_json(&answer) } else { print(&sweep_table::table(&answer)) };
+    }
     let (study, state) = look(&args.folder, args.base.folder())?;
     let summary = state.summary(&study);
     if !is_answer(&args.folder, &summary)? {

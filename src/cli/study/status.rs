@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
 
-use tautline::session::{FolderStatus, Status, status};
+use tautline::session::{FolderStatus, Status, StudyStatus, SweepStatus, status};
 use tautline::study::Stopped;
 
 use super::answer::duration;
@@ -36,23 +36,21 @@ fn table(status: &Status) -> String {
         let _ = text.write_fmt(text_of);
         text.push('\n');
     };
-    let folders = status.studies.iter().flat_map(|study| &study.folders);
-    let width = folders.map(|folder| folder.folder.display().to_string().chars().count()).max().unwrap_or(0).max(6);
-    for (i, study) in status.studies.iter().enumerate() {
+    let of_studies = status.studies.iter().map(|study| &study.folders);
+    let folders = || of_studies.clone().chain(status.sweeps.iter().map(|sweep| &sweep.studies)).flatten();
+    let width = folders().map(|folder| folder.folder.display().to_string().chars().count()).max().unwrap_or(0).max(6);
+    let sweeps = status.sweeps.iter().map(|sweep| (of_sweep(sweep), &sweep.studies));
+    let studies = status.studies.iter().map(|study| (of_study(study), &study.folders));
+    for (i, (title, folders)) in sweeps.chain(studies).enumerate() {
         if i > 0 {
             line(format_args!(""));
         }
-        let name =
-            study.identity.as_ref().map_or("not begun".to_owned(), |identity| format!("study {}", &identity[..12]));
-        let missing = if study.missing.is_empty() { String::new() } else { format!("; missing: {}", study.missing) };
-        let all = counted(study.blocks, "block", "blocks");
-        let of = counted(study.folders.len() as u64, "folder", "folders");
-        line(format_args!("{name}: {} of {all} done, in {of}{missing}", study.done));
+        line(format_args!("{title}"));
         line(format_args!(
             "{:width$}  {:8}{:>16}{:>10}{:>10}  writer",
             "folder", "part", "blocks done", "traces/s", "left"
         ));
-        for folder in &study.folders {
+        for folder in folders {
             let FolderStatus { done, blocks, shard, .. } = folder;
             let left = match (folder.stopped, folder.seconds_left) {
                 (Stopped::Unfinished, left) => left.map_or("?".to_owned(), words),
@@ -71,6 +69,20 @@ fn table(status: &Status) -> String {
         line(format_args!("{why}"));
     }
     text
+}
+
+fn of_study(study: &StudyStatus) -> String {
+    let name = study.identity.as_ref().map_or("not begun".to_owned(), |identity| format!("study {}", &identity[..12]));
+    let missing = if study.missing.is_empty() { String::new() } else { format!("; missing: {}", study.missing) };
+    let all = counted(study.blocks, "block", "blocks");
+    let of = counted(study.folders.len() as u64, "folder", "folders");
+    format!("{name}: {} of {all} done, in {of}{missing}", study.done)
+}
+
+fn of_sweep(sweep: &SweepStatus) -> String {
+    let (name, all) = (sweep.folder.display(), counted(sweep.studies.len() as u64, "study", "studies"));
+    let blocks = counted(sweep.blocks, "block", "blocks");
+    format!("sweep {name}: {} of {all} done, {} of {blocks}", sweep.studies_done, sweep.done)
 }
 
 fn words(seconds: f64) -> String {

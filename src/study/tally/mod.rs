@@ -6,6 +6,7 @@
 //! A tally is a file with a struct that is a [`Tally`], and a line in [`table`](mod@table), in the order of the
 //! summary; its options have their lines in [`TallyPlan`], in the order of a plan.
 
+pub(super) mod anchors;
 mod batches;
 mod block;
 pub(super) mod contacts;
@@ -26,6 +27,7 @@ mod totals;
 mod traced;
 mod winding;
 
+pub use anchors::AnchorAnswer;
 pub(super) use block::{Block, Counts, Tallies};
 pub use contacts::Contact;
 pub use histograms::{Bin, Histogram};
@@ -34,8 +36,9 @@ pub(super) use merge::Merge;
 pub use obstacles::Obstacle;
 pub use options::TallyPlan;
 pub use ropes::CommonRope;
+pub(super) use scalars::scalar_names;
 pub use scalars::{Quantile, Scalar, quantity};
 pub(super) use setting::Setting;
-pub use survival::{Survival, SurvivalPoint};
+pub use survival::{ShareWithin, Survival, SurvivalPoint};
 pub(super) use table::table;
 pub(super) use tally::Tally;

@@ -19,10 +19,17 @@ pub struct TallyPlan {
     pub map_every: u32,
     /// How many of the most common taut ropes are reported.
     pub ropes: u32,
+    /// Whether the answer has that of each anchor too.
+    #[serde(skip_serializing_if = "is_off")]
+    pub anchors: bool,
+}
+
+fn is_off(is: &bool) -> bool {
+    !is
 }
 
 impl Default for TallyPlan {
     fn default() -> Self {
-        TallyPlan { confidence: 0.95, limits: Vec::new(), bin: 0.0, map: 64, map_every: 8, ropes: 10 }
+        TallyPlan { confidence: 0.95, limits: Vec::new(), bin: 0.0, map: 64, map_every: 8, ropes: 10, anchors: false }
     }
 }

@@ -13,7 +13,7 @@ use super::tally::Tally;
 use super::totals::Totals;
 use super::traced::{Size, Traced};
 use crate::rope::{EventKind, TraceRecord};
-use crate::study::estimate::Estimate;
+use crate::study::estimate::{Confidence, Estimate};
 use crate::study::moments::Moments;
 use crate::study::plan_error::PlanError;
 
@@ -42,6 +42,11 @@ const ALL: [Quantity; 6] = [
     Quantity { name: "wraps", words: "wraps", is_length: false, of: |record| count(record, EventKind::Wrap) },
     Quantity { name: "unwraps", words: "unwraps", is_length: false, of: |record| count(record, EventKind::Unwrap) },
 ];
+
+/// Their names, in the order of the summary.
+pub(in crate::study) fn scalar_names() -> [&'static str; ALL.len()] {
+    ALL.map(|quantity| quantity.name)
+}
 
 /// Which quantiles are given.
 const QUANTILES: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99];
@@ -110,8 +115,13 @@ impl ScalarCounts {
         self.moments()[place.expect("it is a scalar")]
     }
 
+    /// Of each block, by its number: the mean of each number.
+    pub(in crate::study) fn means(&self) -> impl Iterator<Item = (u64, [f64; ALL.len()])> {
+        self.moments.iter().map(|(&block, moments)| (block, moments.map(|moments| moments.mean)))
+    }
+
     /// The moments over all blocks, in their order.
-    fn moments(&self) -> [Moments; ALL.len()] {
+    pub(super) fn moments(&self) -> [Moments; ALL.len()] {
         let mut all = [Moments::default(); ALL.len()];
         for block in self.moments.values() {
             all.iter_mut().zip(block).for_each(|(all, block)| all.merge(block));
@@ -150,7 +160,13 @@ impl Tally for Scalars {
     }
 
     fn answer(&self, counts: &ScalarCounts, totals: &Totals, setting: &Setting) -> Vec<Scalar> {
-        let (traces, confidence) = (totals.traces.sum, &setting.confidence);
+        counts.answer(totals.traces.sum, &setting.confidence)
+    }
+}
+
+impl ScalarCounts {
+    /// What they say of so many traces.
+    pub(super) fn answer(&self, traces: u64, confidence: &Confidence) -> Vec<Scalar> {
         // The least number below or at which that share of them lies.
         let rank = |share: f64| ((share * traces as f64).ceil() as u64).max(1);
         let ends = QUANTILES.map(|share| (share, confidence.ranks(share, traces)));
@@ -178,7 +194,7 @@ impl Tally for Scalars {
                 quantiles: ends.map(|(share, ends)| Quantile { share, value: estimate(share, ends) }).to_vec(),
             }
         };
-        ALL.iter().zip(counts.moments()).zip(&counts.classes).map(scalar).collect()
+        ALL.iter().zip(self.moments()).zip(&self.classes).map(scalar).collect()
     }
 }
 

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::TallyPlan;
+use super::merge::Merge;
 use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
@@ -26,11 +27,49 @@ pub(crate) struct Limits {
     times: Vec<u64>,
 }
 
+impl Limits {
+    /// The limits, ascending.
+    pub(in crate::study) fn limits(&self) -> &[f64] {
+        &self.limits
+    }
+
+    /// How many of the limits a rope exceeds that is at most so long.
+    pub(super) fn exceeded(&self, max_length: f64) -> usize {
+        self.limits.partition_point(|&limit| limit < max_length)
+    }
+}
+
+/// For each limit: how many ropes first became longer after so many of the times had gone by. Limits that no rope
+/// exceeded may be left out at the end.
+type Times = Vec<BTreeMap<u64, u64>>;
+
+/// What is counted of some blocks.
+#[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
+pub(crate) struct LimitCounts {
+    times: Times,
+    /// Of each block, by its number, where there are limits: how many of its ropes became longer than each; those that
+    /// none exceeded may be left out at the end. For comparisons block by block.
+    blocks: BTreeMap<u64, Vec<u64>>,
+}
+
+impl LimitCounts {
+    /// How many ropes of a block became longer than the limit of this place.
+    pub(in crate::study) fn longer(&self, block: u64, limit: usize) -> u64 {
+        self.blocks.get(&block).and_then(|longer| longer.get(limit)).copied().unwrap_or(0)
+    }
+}
+
+impl Merge for LimitCounts {
+    fn merge_with(&mut self, other: LimitCounts) {
+        let LimitCounts { times, blocks } = other;
+        self.times.merge_with(times);
+        self.blocks.merge_with(blocks);
+    }
+}
+
 impl Tally for Limits {
-    type Part = Self::Counts;
-    /// For each limit: how many ropes first became longer after so many of the times had gone by. Limits that no rope
-    /// exceeded may be left out at the end.
-    type Counts = Vec<BTreeMap<u64, u64>>;
+    type Part = Times;
+    type Counts = LimitCounts;
     type Answer = Vec<Survival>;
 
     fn check(options: &TallyPlan) -> Result<(), PlanError> {
@@ -55,7 +94,7 @@ impl Tally for Limits {
     }
 
     fn add(&self, part: &mut Self::Part, traced: &Traced<'_>) {
-        let all = self.limits.partition_point(|&limit| limit < traced.record.max_length);
+        let all = self.exceeded(traced.record.max_length);
         part.resize_with(part.len().max(all), BTreeMap::new);
         // The limits that are exceeded at some time, and the first of them that was not yet.
         let (exceeded, mut next) = (&self.limits[..all], 0);
@@ -78,8 +117,10 @@ impl Tally for Limits {
         }
     }
 
-    fn finish(&self, part: Self::Part, _: &Size) -> Self::Counts {
-        part
+    fn finish(&self, part: Times, block: &Size) -> LimitCounts {
+        let longer = part.iter().map(|times| times.values().sum()).collect();
+        let blocks = if self.limits.is_empty() { BTreeMap::new() } else { BTreeMap::from([(block.number, longer)]) };
+        LimitCounts { times: part, blocks }
     }
 
     /// For each limit the share of ropes that were never longer up to a step, or up to their trace's end if that came
@@ -88,7 +129,7 @@ impl Tally for Limits {
         let (traces, last) = (totals.traces.sum, totals.longest_trace);
         let curve = |(i, &limit): (usize, &f64)| {
             let exceeded =
-                |time: usize| counts.get(i).and_then(|times| times.get(&(time as u64))).copied().unwrap_or(0);
+                |time: usize| counts.times.get(i).and_then(|times| times.get(&(time as u64))).copied().unwrap_or(0);
             let still = |longer: u64| setting.confidence.share(traces - longer, traces);
             let mut longer = 0;
             let point = |(time, &step): (usize, &u64)| {
@@ -98,7 +139,7 @@ impl Tally for Limits {
             let before = self.times.iter().enumerate().take_while(|&(_, &step)| step < last);
             let mut curve: Vec<SurvivalPoint> = before.map(point).collect();
             // How long given traces are is only known in the end.
-            let all = counts.get(i).map_or(0, |times| times.values().sum());
+            let all = counts.times.get(i).map_or(0, |times| times.values().sum());
             curve.push(SurvivalPoint { step: last, share: still(all) });
             Survival { limit, curve }
         };
@@ -124,6 +165,15 @@ pub struct SurvivalPoint {
     /// The step.
     pub step: u64,
     /// The share.
+    pub share: Estimate,
+}
+
+/// A share of ropes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ShareWithin {
+    /// The limit.
+    pub limit: f64,
+    /// The share of ropes that never were longer.
     pub share: Estimate,
 }
 

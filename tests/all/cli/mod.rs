@@ -20,6 +20,7 @@ mod scenes;
 mod schema;
 mod study;
 mod study_shared;
+mod study_sweep;
 mod traces;
 mod trade;
 mod tradeoff;

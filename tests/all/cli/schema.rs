@@ -160,6 +160,30 @@ fn real_summaries_are_as_the_schema_says() {
     }
 }
 
+#[test]
+fn sweeps_are_as_their_schemas_say() {
+    let folder = Folder::new();
+    let sweep = "[scene]\nbuilt_in = \"rooms\"\n[walk]\nkind = \"uniform\"\nstep = 0.5\nsteps = 20\n[run]\ntraces = 40\n\
+        block = 10\n[tallies]\nlimits = [2.0]\nanchors = true\n[outputs]\npictures = false\n\
+        [sweep]\nscene.anchor = [[1, 1], [[1, 1], [2, 2]], { sample = 2 }]\nwalk.start = [\"anchor\", \"visible\"]\n";
+    folder.write("s.toml", sweep);
+    folder.done("study run s.toml --out a");
+    let shown = folder.done("study show a --json").stdout;
+    let one = folder.text("a/point-002/summary.json");
+    for (of, text) in [("sweep", folder.text("a/sweep.json")), ("sweep-answer", shown), ("summary", one)] {
+        let schema = Schema { root: json_of(&folder.done(&format!("study schema --of {of}")).stdout) };
+        schema.accepts(&json_of(&text)).unwrap_or_else(|e| panic!("{of}: {e}"));
+        for (name, definition) in schema.root["$defs"].as_object().unwrap() {
+            for (field, rules) in definition["properties"].as_object().into_iter().flatten() {
+                assert!(rules["description"].is_string() || rules["const"].is_string(), "{name}.{field}");
+            }
+        }
+    }
+    // The file's own says what a sweep is.
+    let schema = json_of(&folder.done("study schema").stdout);
+    assert!(schema["properties"]["sweep"]["properties"]["against"]["description"].is_string());
+}
+
 /// A summary with a change is not taken.
 fn check_changes(schema: &Schema, summary: &Value) {
     for (path, value) in [

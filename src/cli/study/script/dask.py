@@ -37,7 +37,8 @@ def part(k):
 
 def merge(*options):
     there = [os.path.join(OUT, f"part-{k}") for k in range(PARTS)]
-    there = [folder for folder in there if os.path.exists(os.path.join(folder, "state.bin"))]
+    # What a study has saved, or a sweep of several.
+    there = [f for f in there if any(os.path.exists(os.path.join(f, name)) for name in ("state.bin", "sweep.json"))]
     return subprocess.run([TAUTLINE, "study", "merge", *there, *options], stdout=subprocess.DEVNULL)
 
 
