@@ -18,6 +18,7 @@ mod results;
 mod safety;
 mod scenes;
 mod schema;
+mod steps;
 mod study;
 mod study_shared;
 mod traces;
