@@ -27,8 +27,8 @@ pub(crate) struct Args {
     #[arg(
         long, value_name = "FILE", requires = "scene",
         conflicts_with_all = [
-            "traces", "anchor", "events", "steps", "engine", "adapter", "precision", "window", "keep_all", "stride", "simplify",
-            "on_violation",
+            "traces", "anchor", "events", "steps", "engine", "adapter", "precision", "window", "keep_all", "stride",
+            "simplify", "on_violation",
         ]
     )]
     queries: Option<PathBuf>,

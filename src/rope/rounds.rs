@@ -7,8 +7,8 @@ use crate::geometry::{TracePoint, between, left_of, orient, orient_step};
 /// How often a path has gone all the way round a wall end, counted as it goes on.
 ///
 /// Counted are crossings of the ray from the wall end through the path's start, by the exact signs of
-/// [`left_of`] and [`orient_step`]: nothing is summed that could be rounded, and a path that touches the wall end passes
-/// it on the side of its [hair](crate::geometry::Hair).
+/// [`left_of`] and [`orient_step`]: nothing is summed that could be rounded, and a path that touches the wall end
+/// passes it on the side of its [hair](crate::geometry::Hair).
 ///
 /// ```
 /// use tautline::geometry::TracePoint;
@@ -28,7 +28,7 @@ pub struct Rounds {
     start: Option<DVec2>,
     /// Where it is, and whether that is left of the ray or on it.
     at: Option<(TracePoint, bool)>,
-    /// How often it has crossed the ray counter-clockwise, less how often clockwise: the number of rounds, rounded down.
+    /// How often it has crossed the ray counter-clockwise, less how often clockwise: the rounds, rounded down.
     crossings: i64,
 }
 

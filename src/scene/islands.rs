@@ -17,7 +17,7 @@ pub(crate) struct Island {
 }
 
 /// The islands of a scene, in the order of their lowest wall ends. O(walls).
-pub(crate) fn islands(scene: &Scene) -> Vec<Island> {
+pub(crate) fn all_islands(scene: &Scene) -> Vec<Island> {
     let roots = roots(scene);
     let mut of: Vec<Option<Island>> = vec![None; roots.len()];
     for (wall, &[u, _]) in scene.walls().iter().enumerate() {
@@ -36,7 +36,7 @@ pub(crate) fn islands(scene: &Scene) -> Vec<Island> {
 }
 
 /// For each wall end the lowest number among those that hang together with it. O(walls).
-fn roots(scene: &Scene) -> Vec<u32> {
+pub(crate) fn roots(scene: &Scene) -> Vec<u32> {
     // Each wall end's parent; the root has the lowest number.
     let mut parents: Vec<u32> = (0..scene.vertices().len() as u32).collect();
     fn root(parents: &mut [u32], mut v: u32) -> u32 {

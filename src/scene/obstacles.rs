@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Scene, islands};
+use super::{Scene, all_islands};
 
 /// A point of an obstacle about which turns are counted, and what it is called.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -69,8 +69,10 @@ impl Scene {
     fn all_labelled(&self) -> Vec<(String, u32)> {
         let labels = self.labels();
         let label = |v: u32| labels.get(v as usize).copied().flatten();
-        let mut all: Vec<(String, u32)> =
-            islands(self).iter().filter_map(|island| Some((label(island.named)?.to_owned(), island.named))).collect();
+        let mut all: Vec<(String, u32)> = all_islands(self)
+            .iter()
+            .filter_map(|island| Some((label(island.named)?.to_owned(), island.named)))
+            .collect();
         all.sort_by_key(|(_, vertex)| *vertex);
         all
     }

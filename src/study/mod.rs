@@ -1,11 +1,14 @@
 //! Monte-Carlo studies: very many random traces, and what their ropes are like on the whole.
 
+mod choose;
+mod chosen;
 mod estimate;
 mod file;
 mod file_places;
 mod free_space;
 mod merge;
 mod moments;
+mod need;
 mod opened;
 mod order;
 mod plan;
@@ -21,10 +24,12 @@ mod surroundings;
 mod tally;
 mod walk;
 
+pub use chosen::Chosen;
 pub use estimate::Estimate;
 pub use file::EXAMPLE;
 pub use merge::merge;
 pub(crate) use moments::Moments;
+pub use need::Held;
 pub use opened::Study;
 pub use plan::{AnchorPlan, OutputPlan, Plan, RunPlan, Sampled, ScenePlan, UntilPlan};
 pub use plan_error::{PlanError, PlanFault};

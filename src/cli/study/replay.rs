@@ -3,11 +3,9 @@
 use std::path::PathBuf;
 
 use anyhow::anyhow;
-use glam::DVec2;
 use tautline::engine::{Engine, FastGpu, Job, Precision, Reference};
-use tautline::geometry::number as shortest;
 use tautline::gpu::{AdapterChoice, Device};
-use tautline::output::{EventWriter, StepWriter, check_output, write_whole};
+use tautline::output::{EventWriter, PointWriter, StepWriter, check_output};
 use tautline::picture::Drawing;
 use tautline::session::look;
 
@@ -31,8 +29,9 @@ pub(crate) struct Args {
     /// Where to write its wraps and unwraps: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
-    /// Where to write the points of the walk, as it was drawn or given: .csv, as `tautline eval --traces` takes them
-    #[arg(long, value_name = "FILE", value_parser = csv)]
+    /// Where to write the points of the walk, as it was drawn or given: .csv or .parquet, as `tautline eval --traces`
+    /// takes them
+    #[arg(long, value_name = "FILE", value_parser = of_points)]
     points: Option<PathBuf>,
     #[command(flatten)]
     every: StepArgs,
@@ -43,17 +42,12 @@ pub(crate) struct Args {
     look: Look,
 }
 
-/// The name of a .csv.
-fn csv(name: &str) -> Result<PathBuf, String> {
+/// The name of a file that `eval --traces` takes.
+fn of_points(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
-    let is_csv = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-    if is_csv { Ok(path) } else { Err("points are written as .csv".to_owned()) }
-}
-
-/// The points of the trace with that number as rows.
-fn rows(number: u64, points: &[DVec2]) -> String {
-    let rows = points.iter().map(|p| format!("{number},{},{}\n", shortest(p.x), shortest(p.y)));
-    std::iter::once("trace,x,y\n".to_owned()).chain(rows).collect()
+    let is_taken =
+        path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known)));
+    if is_taken { Ok(path) } else { Err("points are written as .csv or .parquet".to_owned()) }
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
@@ -103,7 +97,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         steps.finish()?;
     }
     if let Some(path) = &args.points {
-        write_whole(path, rows(args.trace, &study.whole_trace(args.trace)?.ends()).as_bytes())?;
+        let mut points = PointWriter::create(path)?;
+        points.write(args.trace, &study.whole_trace(args.trace)?.ends())?;
+        points.finish()?;
     }
     print(&format!(
         "trace {}: {}, {}, rope length {} at the end, greatest {}, depth {} at the end\n",

@@ -8,6 +8,7 @@
 
 mod batches;
 mod block;
+pub(super) mod by_obstacle;
 pub(super) mod contacts;
 pub(super) mod histograms;
 mod lengths;
@@ -27,6 +28,7 @@ mod traced;
 mod winding;
 
 pub(super) use block::{Block, Counts, Tallies};
+pub use by_obstacle::{ByObstacle, ObstacleContacts};
 pub use contacts::Contact;
 pub use histograms::{Bin, Histogram};
 pub use map::{Cell, Map};

@@ -18,6 +18,9 @@ macro_rules! table {
             /// The wall ends with which ropes had contacts, those with the greatest share of steps first, at most a
             /// thousand.
             contacts: Vec<tally::Contact> = tally::contacts::Contacts;
+            /// Contacts and turns counted by obstacle, if the study asks for that.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            by_obstacle: Option<tally::ByObstacle> = tally::by_obstacle::Obstacles;
             /// The plane.
             map: Option<tally::Map> = tally::map::Cells;
         }

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 
 use crate::rope::Side;
-use crate::scene::{Island, Model, islands};
+use crate::scene::{Island, Model, all_islands};
 
 /// The islands of a scene, from left to right.
 #[derive(Debug)]
@@ -14,7 +14,7 @@ pub(crate) struct Islands(Vec<Island>);
 impl Islands {
     /// O(walls log walls).
     pub(crate) fn new(model: &Model) -> Self {
-        let mut islands = islands(model.scene());
+        let mut islands = all_islands(model.scene());
         islands.sort_by(|a, b| a.middle.x.total_cmp(&b.middle.x).then(a.vertex.cmp(&b.vertex)));
         Islands(islands)
     }

@@ -3,6 +3,8 @@
 mod adapters;
 mod batches;
 mod bench;
+mod by_obstacle;
+mod chosen;
 mod convert;
 mod describe;
 mod draw;

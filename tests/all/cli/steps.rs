@@ -18,7 +18,7 @@ const NAMED: &str = r#"{"type": "FeatureCollection", "features": [
 ]}
 "#;
 
-fn read(folder: &Folder, name: &str) -> Vec<RecordBatch> {
+pub(super) fn read(folder: &Folder, name: &str) -> Vec<RecordBatch> {
     let file = File::open(folder.path(name)).unwrap();
     ParquetRecordBatchReaderBuilder::try_new(file).unwrap().build().unwrap().map(Result::unwrap).collect()
 }
