@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Opens a study's page in a browser, as wide as on a desk and as on a phone: are all pictures there, does everything fit,
-# and is there nothing that it loads or complains of? Installs Chromium where it is missing.
+# Opens a study's page in a browser, as wide as on a desk, in half a window and as on a phone, light and dark: are all
+# pictures there, does everything fit so that no box scrolls, and is there nothing that it loads or complains of?
+# Installs Chromium where it is missing.
 # With a folder as its argument, the page and what the browser showed are left there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -54,6 +55,20 @@ addEventListener('load', () => {
         }
         if (svg.querySelectorAll('path, rect, circle').length < 3) faults.push(`${name}: nothing is drawn`);
     }
+    for (const box of document.querySelectorAll('body *')) {
+        const scrolls = ['auto', 'scroll'].includes(getComputedStyle(box).overflowX) && box.scrollWidth > box.clientWidth;
+        if (scrolls) faults.push(`a box of ${box.scrollWidth} pixels scrolls in ${box.clientWidth}: ${box.textContent.slice(0, 60)}`);
+    }
+    for (const cell of document.querySelectorAll('tbody th, tbody td')) {
+        const r = cell.getBoundingClientRect();
+        if (r.width === 0 || r.left < 0 || r.right > innerWidth) faults.push(`a cell leaves the page: ${cell.textContent}`);
+    }
+    const isDark = matchMedia('(prefers-color-scheme: dark)').matches;
+    for (const card of document.querySelectorAll('.card')) {
+        const turned = getComputedStyle(card.querySelector('svg')).filter !== 'none';
+        const white = getComputedStyle(card).backgroundColor === 'rgb(255, 255, 255)';
+        if (turned !== isDark || white === isDark) faults.push(`a picture is not as ${isDark ? 'dark' : 'light'} as the page`);
+    }
     const wide = document.documentElement.scrollWidth;
     if (wide > innerWidth) faults.push(`the page is ${wide} pixels wide, the window ${innerWidth}`);
     for (const entry of performance.getEntriesByType('resource')) faults.push('it loads ' + entry.name);
@@ -65,9 +80,11 @@ awk -v script="$scratch/measure.html" '{ print } /^<head>$/ { while ((getline li
     "$folder/report.html" >"$scratch/measured.html"
 figures="$(grep --count '^<figure>$' "$folder/report.html")"
 
-# A window is never as narrow as a phone, so the page is shown in a frame: $1 its name, $2 and $3 its width and height.
+# A window is never as narrow as a phone, so the page is shown in a frame: $1 its name, $2 and $3 its width and height,
+# $4 whether the system is light or dark.
 look() {
-    local name="$1" width="$2" height="$3" page
+    local name="$1" width="$2" height="$3" page scheme=1
+    [ "$4" = light ] || scheme=0
     for page in "$scratch/measured.html" "$folder/report.html"; do
         cat >"$scratch/$name-$(basename "$page")" <<HTML
 <!DOCTYPE html>
@@ -85,7 +102,8 @@ HTML
     done
     local run=(timeout 120 "$chromium" --headless --no-sandbox --disable-gpu --disable-quic --no-first-run
         --disable-background-networking --disable-component-update --disable-sync --hide-scrollbars
-        --enable-logging=stderr "--user-data-dir=$scratch/profile-$name" "--window-size=$width,$height" --virtual-time-budget=5000)
+        --enable-logging=stderr "--user-data-dir=$scratch/profile-$name" "--window-size=$width,$height"
+        "--blink-settings=preferredColorScheme=$scheme" --virtual-time-budget=5000)
     "${run[@]}" --dump-dom "file://$scratch/$name-measured.html" >"$scratch/$name.html" 2>"$scratch/$name.log" ||
         { cat "$scratch/$name.log" >&2; echo "$name: the browser failed" >&2; exit 1; }
     local measured
@@ -101,6 +119,7 @@ HTML
     [ "$(wc -c <"$folder/$name.png")" -gt 20000 ] || { echo "$name: the screenshot is empty" >&2; exit 1; }
 }
 
-[ "$figures" -eq 6 ] || { echo "$figures pictures are in the page, not 6" >&2; exit 1; }
-look desk 1280 6200
-look phone 390 7000
+[ "$figures" -eq 7 ] || { echo "$figures pictures are in the page, not 7" >&2; exit 1; }
+look desk 1280 6200 light
+look half 960 6200 dark
+look phone 390 9000 light

@@ -13,6 +13,7 @@ use super::failure::Failure;
 use super::input::{InputArgs, dropped};
 use super::paths::keep_apart;
 use super::progress::{Progress, with_progress};
+use super::steps::StepArgs;
 use super::summary::table;
 use super::trade::TradeArgs;
 use super::{print, print_json};
@@ -26,7 +27,7 @@ pub(crate) struct Args {
     #[arg(
         long, value_name = "FILE", requires = "scene",
         conflicts_with_all = [
-            "traces", "anchor", "events", "engine", "adapter", "precision", "stride", "simplify",
+            "traces", "anchor", "events", "steps", "engine", "adapter", "precision", "stride", "simplify",
             "on_violation",
         ]
     )]
@@ -37,6 +38,8 @@ pub(crate) struct Args {
     /// Where to write every wrap and unwrap: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
+    #[command(flatten)]
+    every: StepArgs,
     #[command(flatten)]
     engine: EngineArgs,
     #[command(flatten)]
@@ -62,6 +65,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let batches = Batches::start(source, terms.clone(), engine.batch());
     let mut account = Account::new(&args.input.name(), &terms, &*engine, on);
     let files = Files::new(args.out.as_deref(), args.events.as_deref(), model, notes(&terms, &*engine));
+    let files = match &args.every.steps {
+        Some(path) => files.with_steps(path, args.every.centres(model.scene())?),
+        None => files,
+    };
     let mut violations = args.input.violations();
     let (job, progress, policy) = (Job::new(), Progress::new(batches.size()), violations.policy());
     let watch = |stage: Stage<'_>| match stage {
@@ -91,9 +98,10 @@ fn notes(terms: &Terms, engine: &dyn Engine) -> Vec<(&'static str, String)> {
 
 /// Refuses outputs that cannot be written, and those that would replace another file of this run.
 fn check_outputs(args: &Args) -> Result<(), Failure> {
-    [&args.out, &args.events].into_iter().flatten().try_for_each(|path| check_output(path))?;
-    let [out, events] = [&args.out, &args.events].map(Option::as_deref);
+    let outputs = [&args.out, &args.events, &args.every.steps];
+    outputs.into_iter().flatten().try_for_each(|path| check_output(path))?;
+    let [out, events, steps] = outputs.map(Option::as_deref);
     let [scene, traces] = args.input.named();
     let inputs = [scene, traces, ("--queries", args.queries.as_deref())];
-    keep_apart(&inputs, &[("--out", out), ("--events", events)])
+    keep_apart(&inputs, &[("--out", out), ("--events", events), ("--steps", steps)])
 }

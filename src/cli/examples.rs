@@ -89,6 +89,7 @@ pub(crate) const STUDY_SCRIPT: &str = "Examples:
 pub(crate) const STUDY_REPLAY: &str = "Examples:
   tautline study replay mine-study --trace 7
   tautline study replay mine-study --trace 7 --events events.jsonl --points points.csv
+  tautline study replay mine-study --trace 7 --steps steps.csv
   tautline study replay mine-study --trace 7 --draw rope.svg";
 
 pub(crate) const STUDY_INIT: &str = "Examples:

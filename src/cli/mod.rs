@@ -22,6 +22,7 @@ mod parse;
 mod paths;
 mod progress;
 mod queries;
+mod steps;
 mod study;
 mod summary;
 mod trade;

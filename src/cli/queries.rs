@@ -28,7 +28,7 @@ pub(crate) fn run(scene: &Path, queries: &Path, out: Option<&Path>, as_json: boo
         error => Failure::input(anyhow!("{}: {error}", queries.display())),
     })?;
     let mut files = Files::new(out, None, &first, Vec::new());
-    files.write(answers.iter().map(|answer| answer.record.clone()).collect())?;
+    files.write(Vec::new(), answers.iter().map(|answer| answer.record.clone()).collect())?;
     files.finish()?;
     let report = Report::new(scene.display().to_string(), queries.display().to_string(), &answers);
     if as_json { print_json(&report) } else { print(&table(&report, &map, &answers)) }

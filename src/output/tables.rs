@@ -10,7 +10,7 @@ use parquet::arrow::arrow_writer::ArrowWriterOptions;
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
-use parquet::file::properties::WriterProperties;
+use parquet::file::properties::{WriterProperties, WriterPropertiesBuilder};
 
 use super::{WholeFile, WriteError};
 
@@ -25,6 +25,10 @@ pub(super) trait Columns {
     fn len(&self) -> usize;
     /// The columns, in the order of the fields; what is left is empty.
     fn take(&mut self) -> Vec<ArrayRef>;
+    /// How they are encoded, other than all are.
+    fn properties(&self, builder: WriterPropertiesBuilder) -> WriterPropertiesBuilder {
+        builder
+    }
 }
 
 /// A Parquet file under way.
@@ -38,10 +42,9 @@ pub(super) struct Table<C> {
 impl<C: Columns> Table<C> {
     pub(super) fn new(path: &Path, file: WholeFile, columns: C) -> Result<Self, WriteError> {
         let schema = Arc::new(Schema::new(columns.fields()));
-        let properties = WriterProperties::builder()
-            .set_compression(Compression::SNAPPY)
-            .set_max_row_group_row_count(Some(BATCH))
-            .build();
+        let properties =
+            WriterProperties::builder().set_compression(Compression::SNAPPY).set_max_row_group_row_count(Some(BATCH));
+        let properties = columns.properties(properties).build();
         // All types are Parquet's own, so readers need no copy of the Arrow schema.
         let options = ArrowWriterOptions::new().with_properties(properties).with_skip_arrow_metadata(true);
         let writer = ArrowWriter::try_new_with_options(file, schema.clone(), options).map_err(|e| error(path, e))?;
@@ -69,6 +72,12 @@ impl<C: Columns> Table<C> {
     /// Writes rows that are there already.
     pub(super) fn write(&mut self, rows: &RecordBatch) -> Result<(), WriteError> {
         self.writer.write(rows).map_err(|e| error(&self.path, e))
+    }
+
+    /// Writes the rows of these columns, which are like its own; row groups are as large as their properties say.
+    pub(super) fn write_columns(&mut self, mut columns: C) -> Result<(), WriteError> {
+        let rows = RecordBatch::try_new(self.schema(), columns.take()).map_err(|e| error(&self.path, e.into()))?;
+        self.write(&rows)
     }
 
     pub(super) fn flush_if_full(&mut self) -> Result<(), WriteError> {

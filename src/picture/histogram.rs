@@ -4,6 +4,8 @@ use super::chart::{Chart, WIDTH, legend};
 use super::colour::{BLUE, INK, MUTED, SKY, VERMILION};
 use super::label::{estimate, number, percent};
 use super::svg::{Align, Svg};
+use super::unit::unit;
+use crate::scene::Scene;
 use crate::study::{Bin, Estimate, Summary, quantity};
 
 /// Bars narrower than this have no room for an error bar each.
@@ -12,7 +14,7 @@ const NARROW: f64 = 5.0;
 /// The histogram of that name: bars, error bars, mean and median.
 ///
 /// A histogram that the summary does not have is an empty picture that says so.
-pub fn histogram(summary: &Summary, name: &str) -> String {
+pub fn histogram(summary: &Summary, scene: &Scene, name: &str) -> String {
     let (height, what) = (360.0, quantity(name));
     let mut svg = Svg::new(WIDTH, height, &format!("Histogram: {what}"));
     let found = summary.histograms.iter().find(|h| h.name == name);
@@ -80,7 +82,7 @@ pub fn histogram(summary: &Summary, name: &str) -> String {
         svg.line([x, top], [x, ground], &style);
         known.push((style, format!("median {}", number(median.value.value, None))));
     }
-    chart.axes(&mut svg, (what, "scene units"), ("share of traces", "%"));
+    chart.axes(&mut svg, (what, unit(scene)), ("share of traces", "%"));
     legend(&mut svg, [left, 18.0], &known);
     let note = format!("error bars: {} % intervals", number(100.0 * summary.study.tallies.confidence, None));
     if bins.iter().any(|b| b.share.low.is_some()) {

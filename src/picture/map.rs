@@ -11,6 +11,7 @@ use super::label::width;
 use super::plane::{Frame, View};
 use super::svg::{Align, Svg, px};
 use super::ticks::Ticks;
+use super::unit::unit;
 use crate::scene::Scene;
 use crate::study::{AnchorPlan, Cell, Map, Summary};
 
@@ -27,7 +28,7 @@ pub fn map(summary: &Summary, scene: &Scene) -> Option<String> {
 /// lengths.
 pub fn length_map(summary: &Summary, scene: &Scene) -> Option<String> {
     let length = |c: &Cell| c.length.map(|e| e.value).filter(|x| x.is_finite());
-    draw(summary, scene, "mean rope length", "scene units", &length)
+    draw(summary, scene, "mean rope length", unit(scene), &length)
 }
 
 /// Which colour a value has.
@@ -95,7 +96,7 @@ fn draw(
     for anchor in anchors(summary, scene) {
         svg.circle(frame.at(anchor), 5.0, &format!("fill=\"{INK}\" stroke=\"#fff\" stroke-width=\"1.5\""));
     }
-    axes(&mut svg, &frame, &y_ticks);
+    axes(&mut svg, &frame, &y_ticks, self::unit(scene));
     let blank = if unit.is_empty() { "grey: no contact" } else { "grey: not seen there" };
     let bottom = frame.top + bar_height.max(frame.height);
     let x = frame.left + frame.width + 22.0;
@@ -153,7 +154,7 @@ fn anchors(summary: &Summary, scene: &Scene) -> Vec<DVec2> {
 }
 
 /// A frame with ticks along the bottom and the left.
-fn axes(svg: &mut Svg, frame: &Frame, y_ticks: &Ticks) {
+fn axes(svg: &mut Svg, frame: &Frame, y_ticks: &Ticks, unit: &str) {
     let stroke = &format!("stroke=\"{INK}\"");
     let (right, bottom) = (frame.left + frame.width, frame.top + frame.height);
     svg.rect([frame.left, frame.top], [frame.width, frame.height], &format!("fill=\"none\" {stroke}"));
@@ -168,15 +169,10 @@ fn axes(svg: &mut Svg, frame: &Frame, y_ticks: &Ticks) {
         svg.line([frame.left - 4.0, y], [frame.left, y], stroke);
         svg.text([frame.left - 7.0, y + 4.0], Align::End, "", name);
     }
-    let title = format!("x ({})", x_ticks.unit("scene units"));
+    let title = format!("x ({})", x_ticks.unit(unit));
     let middle = ((frame.left + right) / 2.0).max(8.0 + width(&title, 13.0) / 2.0);
-    svg.text(
-        [middle, bottom + 38.0],
-        Align::Middle,
-        "font-size=\"13\"",
-        &format!("x ({})", x_ticks.unit("scene units")),
-    );
-    svg.text([8.0, 18.0], Align::Start, "font-size=\"13\"", &format!("y ({})", y_ticks.unit("scene units")));
+    svg.text([middle, bottom + 38.0], Align::Middle, "font-size=\"13\"", &format!("x ({})", x_ticks.unit(unit)));
+    svg.text([8.0, 18.0], Align::Start, "font-size=\"13\"", &format!("y ({})", y_ticks.unit(unit)));
 }
 
 /// The colour bar.

@@ -30,8 +30,10 @@ mod svg;
 mod sweep;
 mod sweep_axis;
 mod tables;
+mod tether;
 mod ticks;
 mod tradeoff;
+mod unit;
 
 use crate::scene::Scene;
 use crate::study::{Summary, quantity};
@@ -46,21 +48,23 @@ pub use raster::png;
 pub use ropes::ropes;
 pub use survival::survival;
 pub use sweep::sweep;
+pub use tether::{sentence, tether};
 pub use tradeoff::tradeoff;
 
 /// All pictures that there are of a study: for each the name of its file without an extension, its title, and the SVG.
 pub fn all(summary: &Summary, scene: &Scene) -> Vec<(String, String, String)> {
-    let mut all = Vec::new();
+    let first = tether(summary, scene).map(|svg| ("tether".into(), "How many walks a tether holds".into(), svg));
+    let mut all: Vec<(String, String, String)> = first.into_iter().collect();
     for h in &summary.histograms {
         let title = match h.name.as_str() {
             "length" => "How long the ropes are at the end".to_string(),
             "max_length" => "How long the ropes are at their longest".to_string(),
             _ => format!("Histogram of the {}", quantity(&h.name)),
         };
-        all.push((format!("histogram-{}", h.name.replace('_', "-")), title, histogram(summary, &h.name)));
+        all.push((format!("histogram-{}", h.name.replace('_', "-")), title, histogram(summary, scene, &h.name)));
     }
     let others = [
-        ("survival", "How many ropes stay short, step by step", survival(summary)),
+        ("survival", "How many ropes stay short, step by step", survival(summary, scene)),
         ("map", "Where ropes touch walls", map(summary, scene)),
         ("length-map", "How long the rope is, by where its free end is", length_map(summary, scene)),
         ("ropes", "The commonest ropes at the end", ropes(summary, scene)),

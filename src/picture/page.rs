@@ -7,26 +7,35 @@ use serde_json::Value;
 use super::label::{count, number};
 use super::svg::escape;
 use super::tables;
+use super::tether::sentence;
+use crate::scene::Scene;
 use crate::study::{AtWalls, ScenePlan, Stopped, Summary};
 
 const STYLE: &str = include_str!("page.css");
 
-/// A page with everything in it: what was studied, the numbers, and the pictures, each with its title. `run` is what is
-/// known of the run itself: where and how long it ran. The page needs no other file, no network and no scripts.
-pub fn page(summary: &Summary, pictures: &[(String, String)], run: Option<&Value>) -> String {
-    let name = escape(&scene(&summary.study.scene));
+/// A page with everything in it: the answer in one sentence, the first of the pictures, what was walked in `scene`, the
+/// numbers, and the other pictures, each with its title. `run` is what is known of the run itself: where and how long
+/// it ran. The page needs no other file, no network and no scripts; it is dark where the reader's system is.
+pub fn page(summary: &Summary, scene: &Scene, pictures: &[(String, String)], run: Option<&Value>) -> String {
+    let name = escape(&name(&summary.study.scene));
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"color-scheme\" content=\"light dark\">\n<title>Study of {name}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>Study of {name}</h1>\n"
     );
+    if let Some(sentence) = sentence(summary, scene) {
+        let _ = writeln!(out, "<p class=\"answer\">{}</p>", escape(&sentence));
+    }
+    let (first, others) = pictures.split_at(pictures.len().min(1));
+    out.push_str(&figures(first));
     out.push_str(&facts(summary));
     let confidence = number(100.0 * summary.study.tallies.confidence, None);
+    let unit = scene.unit().map_or("the scene’s unit".to_owned(), escape);
     let _ = writeln!(
         out,
-        "<p class=\"note\">Lengths are in the scene’s unit. Intervals, in parentheses, hold the true value in \
-         {confidence} % of all studies.</p>"
+        "<p class=\"note\">Lengths are in {unit}. Intervals, in parentheses, hold the true value in {confidence} % of \
+         all studies.</p>"
     );
     let mut section = |title: &str, there: bool, body: String| {
         if there {
@@ -34,9 +43,13 @@ pub fn page(summary: &Summary, pictures: &[(String, String)], run: Option<&Value
         }
     };
     section("Numbers", !summary.scalars.is_empty(), tables::scalars(summary));
-    section("Pictures", !pictures.is_empty(), figures(pictures));
+    section("Quantiles", summary.scalars.iter().any(|s| !s.quantiles.is_empty()), tables::quantiles(summary));
+    section("Pictures", !others.is_empty(), figures(others));
     section("Anchors", summary.anchors.is_some(), tables::anchors(summary));
     section("Obstacles that ropes are wound about", !summary.obstacles.is_empty(), tables::obstacles(summary));
+    if let Some(counted) = &summary.by_obstacle {
+        section("Contacts by obstacle", true, tables::by_obstacle(counted));
+    }
     section("Commonest ropes at the end", !summary.ropes.is_empty(), tables::ropes(summary));
     section("Wall ends with the longest contacts", !summary.contacts.is_empty(), tables::contacts(summary));
     let plan = serde_json::to_value(&summary.study).unwrap_or_default();
@@ -86,12 +99,12 @@ fn facts(summary: &Summary) -> String {
 }
 
 /// The scene's name.
-fn scene(plan: &ScenePlan) -> String {
+fn name(plan: &ScenePlan) -> String {
     let file = plan.file.as_ref().map(|f| f.display().to_string());
     plan.built_in.clone().or(file).unwrap_or_else(|| "a scene".into())
 }
 
-/// The pictures, each on a card that is light in the dark too: their colours are made for white.
+/// The pictures, each on a card. Their colours are made for white; the page's style turns them where it is dark.
 fn figures(pictures: &[(String, String)]) -> String {
     let mut out = String::new();
     for (title, svg) in pictures {
@@ -99,7 +112,7 @@ fn figures(pictures: &[(String, String)]) -> String {
         let svg = svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
         let _ = write!(
             out,
-            "<figure>\n<figcaption>{}</figcaption>\n<div class=\"card\" tabindex=\"0\">\n{svg}</div>\n</figure>\n",
+            "<figure>\n<figcaption>{}</figcaption>\n<div class=\"card\">\n{svg}</div>\n</figure>\n",
             escape(title)
         );
     }

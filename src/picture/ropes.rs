@@ -17,38 +17,34 @@ const MARGIN: f64 = 12.0;
 const GAP: f64 = 14.0;
 /// How much room the words above a small picture take.
 const HEAD: f64 = 24.0;
+/// How high a small picture is for its width.
+const SHAPE: f64 = 0.8;
+/// The least part of the scene's longer side that is shown.
+const LEAST: f64 = 0.2;
 const DASHES: &str = "stroke-width=\"1.8\" stroke-dasharray=\"5 3\" stroke-linejoin=\"round\"";
 
 /// The commonest ropes over the scene, at most ten; `None` if there are none.
 ///
-/// All pictures show the same part of the plane: the whole scene, or what the ropes take up if that is much less.
+/// Each shows the part of the plane that its rope takes up, and some room round it.
 pub fn ropes(summary: &Summary, scene: &Scene) -> Option<String> {
     let ropes = &summary.ropes[..summary.ropes.len().min(MOST)];
     if ropes.is_empty() {
         return None;
     }
-    let view = view(ropes, scene)?;
     let width = (WIDTH - 2.0 * MARGIN - GAP * (COLUMNS - 1) as f64) / COLUMNS as f64;
-    let size = view.size();
-    let height = width * size.y / size.x;
+    let height = width * SHAPE;
     let rows = ropes.len().div_ceil(COLUMNS);
     let bottom = MARGIN + rows as f64 * (HEAD + height + GAP);
     let mut svg = Svg::new(WIDTH, bottom + 48.0, "The commonest ropes at the end");
-
-    // The walls stand in the file once.
-    let frame_at = |at: [f64; 2]| Frame::fit(view, at, [width, height]).of(scene);
-    svg.open("defs", "");
     let style = format!("fill=\"none\" stroke=\"{WALL}\" stroke-width=\".8\" stroke-linejoin=\"round\"");
-    svg.path(&frame_at([0.0, 0.0]).walls(scene), &format!("id=\"rope-walls\" {style}"));
-    svg.close("defs");
     for (i, rope) in ropes.iter().enumerate() {
         let left = MARGIN + (i % COLUMNS) as f64 * (width + GAP);
         let top = MARGIN + HEAD + (i / COLUMNS) as f64 * (HEAD + height + GAP);
         let sign = if rope.at_most > rope.count { "≥ " } else { "" };
         svg.text([left, top - 7.0], Align::Start, "", &format!("{}.  {sign}{}", i + 1, percent(&rope.share)));
-        let frame = frame_at([left, top]);
+        let frame = Frame::fit(view(rope, scene)?, [left, top], [width, height]).of(scene);
         svg.rect([left, top], [frame.width, frame.height], "fill=\"#fafafa\"");
-        svg.copy("rope-walls", [left, top]);
+        svg.path(&frame.walls(scene), &style);
         svg.rect([left, top], [frame.width, frame.height], "fill=\"none\" stroke=\"#ccc\"");
         draw(&mut svg, &frame, rope);
     }
@@ -56,10 +52,19 @@ pub fn ropes(summary: &Summary, scene: &Scene) -> Option<String> {
     Some(svg.finish())
 }
 
-/// Which part of the plane is shown.
-fn view(ropes: &[CommonRope], scene: &Scene) -> Option<View> {
-    let points = || ropes.iter().flat_map(|r| r.wraps.iter().chain([&r.anchor])).map(|&p| DVec2::from(p));
-    View::of_what_matters(points(), scene.vertices().iter().copied().chain(points()), 1.5)
+/// Which part of the plane is shown: what the rope takes up with room round it, in the shape of all pictures. A
+/// straight rope, of which only the anchor is known, and a very short one are shown in a fifth of the scene.
+fn view(rope: &CommonRope, scene: &Scene) -> Option<View> {
+    let points = || rope.wraps.iter().chain([&rope.anchor]).map(|&p| DVec2::from(p));
+    let whole = View::around(scene.vertices().iter().copied().chain(points()))?;
+    let size = whole.size().max_element();
+    let least =
+        if size > 0.0 { LEAST * size } else { (whole.low.abs().max_element() * 0.1).max(f64::MIN_POSITIVE * 1e16) };
+    let near = View::around(points())?.padded(0.25);
+    let room = near.size().max(DVec2::splat(least));
+    let wanted = room.max(DVec2::new(room.y / SHAPE, room.x * SHAPE));
+    let more = (wanted - near.size()) / 2.0;
+    Some(View { low: near.low - more, high: near.high + more })
 }
 
 /// A rope from its anchor to beyond its last turn.
@@ -154,7 +159,7 @@ fn key(svg: &mut Svg, y: f64) {
     words(222.0, y, "turns, wall end on the left");
     words(446.0, y, "on the right");
     words(566.0, y, "on to the free end");
-    words(MARGIN, y + 22.0, "Numbers count the turns from the anchor. All pictures show the same part of the scene.");
+    words(MARGIN, y + 22.0, "Numbers count the turns from the anchor. Each picture is zoomed to its rope.");
     svg.circle([MARGIN + 5.0, y], 4.5, &format!("fill=\"{INK}\""));
     svg.line([98.0, y], [126.0, y], &format!("stroke=\"{INK}\" {DASHES}"));
     mark(svg, [212.0, y], true);

@@ -4,13 +4,15 @@ use super::chart::{Chart, WIDTH};
 use super::colour::{MUTED, colour};
 use super::label::number;
 use super::svg::{Align, Svg};
+use super::unit::unit;
+use crate::scene::Scene;
 use crate::study::{Estimate, Summary, Survival};
 
 /// How far apart the names of curves are at the least.
 const LINE: f64 = 15.0;
 
 /// The share of ropes that were never longer than each limit, against the step; `None` if the study has no limits.
-pub fn survival(summary: &Summary) -> Option<String> {
+pub fn survival(summary: &Summary, scene: &Scene) -> Option<String> {
     let mut curves: Vec<&Survival> = summary.survival.iter().filter(|s| !s.curve.is_empty()).collect();
     curves.sort_by(|a, b| b.limit.total_cmp(&a.limit));
     let steps = || curves.iter().flat_map(|s| &s.curve).map(|p| p.step as f64);
@@ -67,7 +69,12 @@ pub fn survival(summary: &Summary) -> Option<String> {
         svg.text([right + 22.0, place + 4.0], Align::Start, "", &format!("≤ {}", number(curves[i].limit, None)));
     }
     svg.text([right + 22.0, 24.0], Align::Start, &format!("fill=\"{MUTED}\""), "limit");
-    svg.text([right + 22.0, 38.0 - 1.0], Align::Start, &format!("fill=\"{MUTED}\" font-size=\"10\""), "(scene units)");
+    svg.text(
+        [right + 22.0, 38.0 - 1.0],
+        Align::Start,
+        &format!("fill=\"{MUTED}\" font-size=\"10\""),
+        &format!("({})", unit(scene)),
+    );
     Some(svg.finish())
 }
 

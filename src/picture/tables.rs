@@ -4,64 +4,78 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::label::{count, interval, number, percent, resolution};
+use super::label::{count, number, percent};
 use super::svg::escape;
-use crate::study::{Estimate, Summary, quantity};
+use crate::study::{ByObstacle, Estimate, Scalar, Summary, quantity};
 
 /// How many rows the tables of obstacles and of wall ends have at the most.
 const ROWS: usize = 20;
 
 /// A table: its class, its head, and its rows cell by cell. Cells are text; what a row begins with is its head. In a
-/// table of `words`, the last column may be long.
+/// table of `words`, the last column may be long. Each cell knows the head of its column, which stands beside it where
+/// the page is too narrow for columns.
 fn table(class: &str, head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let mut out = format!("<div class=\"wide\"><table class=\"{class}\">\n<thead><tr>");
+    let mut out = format!("<table class=\"{class}\">\n<thead><tr>");
     for name in head {
         let _ = write!(out, "<th scope=\"col\">{}</th>", escape(name));
     }
     out.push_str("</tr></thead>\n<tbody>\n");
     for row in rows {
         out.push_str("<tr>");
-        for (i, cell) in row.iter().enumerate() {
-            let (open, close) = if i == 0 { ("<th scope=\"row\">", "</th>") } else { ("<td>", "</td>") };
-            let _ = write!(out, "{open}{}{close}", escape(cell));
+        for (i, (cell, name)) in row.iter().zip(head).enumerate() {
+            let cell = escape(cell);
+            let _ = match i {
+                0 => write!(out, "<th scope=\"row\">{cell}</th>"),
+                _ => write!(out, "<td data-head=\"{}\">{cell}</td>", escape(name)),
+            };
         }
         out.push_str("</tr>\n");
     }
-    out.push_str("</tbody></table></div>\n");
+    out.push_str("</tbody></table>\n");
     out
 }
 
 /// The numbers of which there is one a trace.
 pub(super) fn scalars(summary: &Summary) -> String {
+    let rows = summary.scalars.iter().map(|s| {
+        let value = |x: f64| number(x, None);
+        let optional = |x: Option<String>| x.unwrap_or_else(|| "–".into());
+        vec![
+            quantity(&s.name).to_owned(),
+            plain(&s.mean),
+            optional(s.mean.error.map(|e| number(e, Some(e)))),
+            optional(s.deviation.map(value)),
+            value(s.min),
+            value(s.max),
+        ]
+    });
+    table("numbers", &["", "mean", "standard error", "deviation", "least", "greatest"], rows)
+}
+
+/// The quantiles of the same, each with its interval: a column for each number.
+pub(super) fn quantiles(summary: &Summary) -> String {
     let mut shares: Vec<f64> = summary.scalars.iter().flat_map(|s| &s.quantiles).map(|q| q.share).collect();
     shares.sort_by(f64::total_cmp);
     shares.dedup();
-    let names =
-        shares.iter().map(|&s| if s == 0.5 { "median".into() } else { format!("{} %", number(100.0 * s, None)) });
-    let names: Vec<String> = names.collect();
-    let mut head = vec!["", "mean", "standard error", "interval", "deviation", "least"];
-    head.extend(names.iter().map(String::as_str));
-    head.push("greatest");
-    let rows = summary.scalars.iter().map(|s| {
-        let plain = |x: f64| number(x, None);
-        let optional = |x: Option<String>| x.unwrap_or_else(|| "–".into());
-        let mut row = vec![
-            quantity(&s.name).to_owned(),
-            number(s.mean.value, resolution(&s.mean)),
-            optional(s.mean.error.map(|e| number(e, Some(e)))),
-            optional(interval(&s.mean)),
-            optional(s.deviation.map(plain)),
-            plain(s.min),
-        ];
-        row.extend(
-            shares
-                .iter()
-                .map(|&share| optional(s.quantiles.iter().find(|q| q.share == share).map(|q| plain(q.value.value)))),
-        );
-        row.push(plain(s.max));
-        row
+    let head: Vec<&str> = std::iter::once("").chain(summary.scalars.iter().map(|s| quantity(&s.name))).collect();
+    let rows = shares.iter().map(|&share| {
+        let name = if share == 0.5 { "median".into() } else { format!("{} %", number(100.0 * share, None)) };
+        let of = |s: &Scalar| {
+            let quantile = s.quantiles.iter().find(|q| q.share == share);
+            quantile.map_or_else(|| "–".into(), |q| whole(&q.value).unwrap_or_else(|| plain(&q.value)))
+        };
+        std::iter::once(name).chain(summary.scalars.iter().map(of)).collect()
     });
     table("numbers", &head, rows)
+}
+
+/// A number and its interval where all are whole: counts, whose digits are all known.
+fn whole(e: &Estimate) -> Option<String> {
+    let ends: Option<Vec<String>> = [Some(e.value), e.low, e.high]
+        .into_iter()
+        .map(|x| x.filter(|x| *x >= 0.0 && *x < 1e15 && x.fract() == 0.0).map(|x| count(x as u64)))
+        .collect();
+    ends.map(|ends| format!("{} ({}–{})", ends[0], ends[1], ends[2]))
 }
 
 /// What ropes were wound about.
@@ -116,6 +130,22 @@ pub(super) fn contacts(summary: &Summary) -> String {
         rows.map(|c| vec![c.vertex.to_string(), place(c.label.as_deref(), c.at), percent(&c.share), plain(&c.wraps)]);
     table("numbers", &["wall end", "at", "share of steps", "wraps a trace"], rows)
         + &left_out(summary.contacts.len(), "wall ends")
+}
+
+/// Contacts, several in a row with one obstacle counting as one.
+pub(super) fn by_obstacle(counted: &ByObstacle) -> String {
+    let rows = counted.obstacles.iter().take(ROWS).map(|o| {
+        let (walls, at) = (count(o.walls.into()), place(o.label.as_deref(), o.at));
+        vec![o.vertex.to_string(), at, walls, percent(&o.share), plain(&o.contacts), plain(&o.turns)]
+    });
+    let head = ["obstacle", "at", "walls", "share of steps", "contacts a trace", "turns at the end"];
+    format!(
+        "<p class=\"note\">Wall ends of one obstacle that a rope touches in a row count once. A trace: {} contacts; \
+         at the end of one: {} turns.</p>\n",
+        plain(&counted.contacts),
+        plain(&counted.turns)
+    ) + &table("numbers", &head, rows)
+        + &left_out(counted.obstacles.len(), "obstacles")
 }
 
 /// All that a JSON object holds, one value a row.

@@ -4,12 +4,18 @@
 mod moment;
 mod record;
 mod replay;
+mod rounds;
 mod stack;
+mod step_columns;
+mod steps;
 mod update;
 
 pub use moment::Moment;
 pub use record::{Event, EventKind, Status, TraceRecord};
 pub(crate) use replay::{Lasting, lasting};
 pub use replay::{moments, replay};
+pub use rounds::Rounds;
 pub use stack::{Contact, Rope, Side};
+pub use step_columns::StepColumns;
+pub use steps::{RopeStep, Steps};
 pub use update::{Leg, Sweep};

@@ -8,7 +8,7 @@ use super::stack::LastLeg;
 use super::{Contact, Event, EventKind, Moment, Rope};
 
 /// A trace's rope on its way through the events.
-struct Replay<'a> {
+pub(super) struct Replay<'a> {
     /// The scene's.
     vertices: &'a [DVec2],
     events: &'a [Event],
@@ -17,7 +17,7 @@ struct Replay<'a> {
 }
 
 impl<'a> Replay<'a> {
-    fn new(vertices: &'a [DVec2], events: &'a [Event]) -> Self {
+    pub(super) fn new(vertices: &'a [DVec2], events: &'a [Event]) -> Self {
         Replay { vertices, events, happened: 0 }
     }
 
@@ -27,12 +27,12 @@ impl<'a> Replay<'a> {
     }
 
     /// The event that happens next, if that is so up to the end of `step`.
-    fn due(&self, step: usize) -> Option<&'a Event> {
+    pub(super) fn due(&self, step: usize) -> Option<&'a Event> {
         self.next().filter(|event| event.step as usize <= step)
     }
 
     /// Makes the next event happen to the rope.
-    fn play(&mut self, rope: &mut Rope) {
+    pub(super) fn play(&mut self, rope: &mut Rope) {
         let event = &self.events[self.happened];
         match event.kind {
             EventKind::Wrap => rope.push(event.vertex, self.vertices[event.vertex as usize], event.side),

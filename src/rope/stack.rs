@@ -81,6 +81,14 @@ impl TautEnd {
     fn length_to(self, to: DVec2) -> f64 {
         self.length + self.at.distance(to)
     }
+
+    /// The unit vector from `a` to here; `None` if they are the same point.
+    fn pull(self, a: DVec2) -> Option<DVec2> {
+        let back = self.at - a;
+        // Scaled first: the length of a tiny vector must not lose digits to underflow.
+        let size = back.abs().max_element();
+        (size > 0.0).then(|| back / size / (back / size).length())
+    }
 }
 
 /// Ropes with the same contacts, wherever the free end is.
@@ -97,6 +105,12 @@ impl LastLeg {
     #[inline]
     pub(crate) fn pivot(&self) -> DVec2 {
         self.bent.at
+    }
+
+    /// The taut rope's length, its number of turns and its pull for the free end `a`: what [`Rope`] says of each.
+    pub(super) fn look(&self, a: DVec2) -> (f64, u32, Option<DVec2>) {
+        let end = self.taut_end(a);
+        (end.length_to(a), end.depth, end.pull(a))
     }
 
     /// The last corner of the taut rope to the free end `a`.
@@ -230,10 +244,7 @@ impl Rope {
 
     /// The unit vector along which the rope pulls the free end `a`; `None` when the rope has no length.
     pub fn pull(&self, a: DVec2) -> Option<DVec2> {
-        let back = self.taut_end(a).at - a;
-        // Scaled first: the length of a tiny vector must not lose digits to underflow.
-        let size = back.abs().max_element();
-        (size > 0.0).then(|| back / size / (back / size).length())
+        self.taut_end(a).pull(a)
     }
 
     /// The taut rope to the free end `a`: the contacts without those passed straight, and without the pivot if `a`

@@ -13,11 +13,13 @@ mod grid;
 #[cfg(feature = "read-ros")]
 mod image;
 mod index;
+mod islands;
 mod layers;
 mod lines;
 mod model;
 mod movingai;
 mod object;
+mod obstacles;
 mod options;
 mod outlines;
 mod pen;
@@ -39,10 +41,12 @@ use crate::geometry::{CoordinateFault, check_point};
 pub use description::{Description, Label, Layer};
 pub use format::{SceneFormat, alternatives};
 pub use index::WallIndex;
+pub(crate) use islands::{Island, all_islands, roots};
 pub use model::{AnchorError, Model};
 pub use movingai::GridMap;
 pub(crate) use object::MEMBER;
 pub use object::{Inside, Object, Wall};
+pub use obstacles::{Centre, UnknownObstacle};
 pub use options::{Ros, SceneOptions, Unknown};
 pub use pivot::Pivot;
 pub use read::{map_image, read_scene, read_scene_with};
@@ -261,6 +265,26 @@ impl Scene {
     /// walls follow curves, and that degrees are no lengths. Sentences without a full stop.
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// What a unit is called, such as `mm`, where the scene's file says that it is one of those; of a drawing without a
+    /// size, `px`.
+    ///
+    /// ```
+    /// # let folder = tempfile::tempdir()?;
+    /// # let path = folder.path().join("a.svg");
+    /// let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="60mm" viewBox="0 0 90 60"/>"#;
+    /// std::fs::write(&path, svg)?;
+    /// assert_eq!(tautline::scene::read_scene(&path)?.unit(), Some("mm"));
+    /// assert_eq!(tautline::example::floor_plan().unit(), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn unit(&self) -> Option<&str> {
+        let unit = self.notes.iter().find_map(|note| note.strip_prefix("a unit is "))?;
+        match unit.strip_prefix("1 ") {
+            Some(unit) => unit.split([';', '(']).next().map(str::trim),
+            None => unit.starts_with("a pixel").then_some("px"),
+        }
     }
 
     fn note(&mut self, note: impl Into<String>) {

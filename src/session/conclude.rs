@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::chosen;
 use super::error::SessionError;
 use super::folder::Folder;
 use super::names::{PAGE, RUN_REPORT, SUMMARY};
@@ -16,15 +17,18 @@ pub(super) const WIDTH: u32 = 1600;
 
 impl Session {
     /// Writes the answer so far, and what it cost: `summary.json`, `run.json`, and where the study says so the pictures
-    /// and the page that shows them.
+    /// and the page that shows them, and the steps and points of chosen traces.
     ///
     /// # Errors
     ///
-    /// What the operating system says.
+    /// What the operating system says, and what the chosen traces do.
     pub fn conclude(&self, report: &RunReport) -> Result<Summary, SessionError> {
         let (folder, study) = (&self.folder, &*self.study);
+        // The state is not locked meanwhile: this can take its time.
+        let chosen = chosen::write(folder, study, &self.state())?;
         let summary = {
             let mut state = locked(&self.state);
+            state.kept.files.extend(chosen);
             let summary = state.summary(study);
             folder.write(SUMMARY, pretty(&summary)?.as_bytes())?;
             let report = pretty(report)?;
@@ -42,7 +46,8 @@ impl Session {
 
 /// Writes the pictures and the page that shows them.
 fn draw(folder: &Folder, summary: &Summary, study: &Study, report: &RunReport) -> Result<(), SessionError> {
-    let pictures = picture::all(summary, study.models()[0].scene());
+    let scene = study.models()[0].scene();
+    let pictures = picture::all(summary, scene);
     for (name, _, svg) in &pictures {
         folder.write(&format!("{name}.svg"), svg.as_bytes())?;
         match picture::png(svg, WIDTH) {
@@ -54,7 +59,7 @@ fn draw(folder: &Folder, summary: &Summary, study: &Study, report: &RunReport) -
     }
     let shown: Vec<_> = pictures.into_iter().map(|(_, title, svg)| (title, svg)).collect();
     let report = serde_json::to_value(report)?;
-    folder.write(PAGE, picture::page(summary, &shown, Some(&report)).as_bytes())
+    folder.write(PAGE, picture::page(summary, scene, &shown, Some(&report)).as_bytes())
 }
 
 /// A study in a folder, and how far it is. Its files are named from `base`, or else from where they were as it began.
@@ -87,7 +92,9 @@ pub fn answered(folder: &Path, study: &Study, shard: Shard) -> Result<Option<Sum
         return Ok(None);
     }
     let summary = state.summary(study);
-    let is_whole = is_answer(folder, &summary)? && (!outputs.traces || rows::of_shard(&here, &state).is_ok());
+    let is_whole = is_answer(folder, &summary)?
+        && (!outputs.traces || rows::of_shard(&here, &state).is_ok())
+        && chosen::are_whole(&here, study, &state);
     Ok(is_whole.then_some(summary))
 }
 

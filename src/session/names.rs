@@ -18,6 +18,12 @@ pub(super) const STUDY: &str = "study.json";
 /// One row a trace, once the study is done.
 pub(super) const TRACES: &str = "traces.parquet";
 
+/// The rope after every step of some traces.
+pub(super) const STEPS: &str = "steps.parquet";
+
+/// The points of some walks.
+pub(super) const POINTS: &str = "points.parquet";
+
 /// The folder of the rows until then.
 pub(super) const PARTS: &str = "traces";
 

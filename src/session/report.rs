@@ -148,17 +148,23 @@ pub(super) fn pretty(report: &impl Serialize) -> Result<String, serde_json::Erro
 
 /// What each file of rows says of where it comes from.
 pub(super) fn provenance(study: &Study, computed: &Computed) -> Vec<(&'static str, String)> {
-    let here = Environment::here(None);
-    let run = &study.plan().run;
-    let mut notes = vec![
-        ("tautline.version", here.version.to_owned()),
-        ("tautline.commit", here.commit.to_owned()),
-        ("tautline.study", study.identity().to_owned()),
-        ("tautline.seed", run.seed.to_string()),
+    let mut notes = origin(study);
+    notes.extend([
         ("tautline.engine", computed.engine.to_owned()),
         ("tautline.precision", computed.precision.to_owned()),
         ("tautline.on", computed.on.clone()),
-    ];
-    notes.extend(run.trade().notes());
+    ]);
+    notes.extend(study.plan().run.trade().notes());
     notes
+}
+
+/// The same but for what computed it.
+pub(super) fn origin(study: &Study) -> Vec<(&'static str, String)> {
+    let here = Environment::here(None);
+    vec![
+        ("tautline.version", here.version.to_owned()),
+        ("tautline.commit", here.commit.to_owned()),
+        ("tautline.study", study.identity().to_owned()),
+        ("tautline.seed", study.plan().run.seed.to_string()),
+    ]
 }

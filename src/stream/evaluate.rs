@@ -57,7 +57,7 @@ impl Stage<'_> {
 
 /// Evaluates all `batches` and has their ropes written to `files`, which appear at the end, all or none. `watch` is
 /// told of each batch when it is read and when it is evaluated. The job may be stopped from another thread. Memory is
-/// bounded by two batches.
+/// bounded by two batches, and by a third where the files want every step.
 ///
 /// # Errors
 ///
@@ -82,7 +82,7 @@ pub fn evaluate(
         let records = engine.evaluate(&settled, job)?;
         times.evaluated += start.elapsed();
         watch(Stage::Evaluated { settled: &settled, records: &records });
-        files.write(records)?;
+        files.write(settled, records)?;
     }
     times.written = files.finish()?;
     Ok(times)

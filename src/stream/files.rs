@@ -8,9 +8,10 @@ use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
 use super::StreamError;
-use crate::output::{EventWriter, ResultWriter, WholeFile, WriteError, commit};
+use crate::output::{EventWriter, ResultWriter, StepWriter, WholeFile, WriteError, commit};
 use crate::rope::TraceRecord;
-use crate::scene::Model;
+use crate::scene::{Centre, Model};
+use crate::trace::SettledTrace;
 
 /// How many records are written at a time; their text is held in memory.
 const RECORDS: usize = 1024;
@@ -18,17 +19,28 @@ const RECORDS: usize = 1024;
 /// The files of a run. They are begun with the first batch and appear under their names in [`finish`](Self::finish);
 /// dropped before that, nothing is left of them.
 pub struct Files {
-    out: Option<PathBuf>,
-    events: Option<PathBuf>,
-    model: Arc<Model>,
-    /// What is noted in Parquet files.
-    notes: Vec<(&'static str, String)>,
+    wanted: Wanted,
     running: Option<Running>,
 }
 
+/// What is to be written.
+#[derive(Clone)]
+struct Wanted {
+    out: Option<PathBuf>,
+    events: Option<PathBuf>,
+    /// And about what turns are counted.
+    steps: Option<(PathBuf, Vec<Centre>)>,
+    model: Arc<Model>,
+    /// What is noted in Parquet files.
+    notes: Vec<(&'static str, String)>,
+}
+
+/// Traces, where they are needed, and what became of them.
+type Evaluated = (Vec<SettledTrace>, Vec<TraceRecord>);
+
 struct Running {
     /// Taken when no more records come.
-    sender: Option<SyncSender<Vec<TraceRecord>>>,
+    sender: Option<SyncSender<Evaluated>>,
     thread: Option<JoinHandle<Result<Written, WriteError>>>,
 }
 
@@ -45,20 +57,31 @@ impl Files {
         notes: Vec<(&'static str, String)>,
     ) -> Self {
         let [out, events] = [out, events].map(|path| path.map(Path::to_owned));
-        Files { out, events, model: model.clone(), notes, running: None }
+        Files { wanted: Wanted { out, events, steps: None, model: model.clone(), notes }, running: None }
     }
 
-    /// Takes the next records, and waits while those before are being written.
+    /// The same with the rope after every step in the file at `steps`, and turns counted about each of `centres`: see
+    /// [`StepWriter`].
+    #[must_use]
+    pub fn with_steps(mut self, steps: &Path, centres: Vec<Centre>) -> Self {
+        self.wanted.steps = Some((steps.to_owned(), centres));
+        self
+    }
+
+    /// Takes the next records, and waits while those before are being written. Their traces, in the same order, are
+    /// needed where [every step](Self::with_steps) is to be written, and may be left out elsewhere.
     ///
     /// # Errors
     ///
     /// What went wrong with these or with earlier records.
-    pub fn write(&mut self, records: Vec<TraceRecord>) -> Result<(), StreamError> {
-        if self.out.is_none() && self.events.is_none() {
+    pub fn write(&mut self, traces: Vec<SettledTrace>, records: Vec<TraceRecord>) -> Result<(), StreamError> {
+        if !self.wanted.is_any() {
             return Ok(());
         }
-        let running = self.run()?;
-        let sent = running.sender.as_ref().map(|sender| sender.send(records));
+        // Memory is for those who ask.
+        let traces = if self.wanted.steps.is_some() { traces } else { Vec::new() };
+        let running = self.run();
+        let sent = running.sender.as_ref().map(|sender| sender.send((traces, records)));
         // The thread ends early for a reason, which it tells.
         if let Some(Ok(())) = sent { Ok(()) } else { running.end().map(drop) }
     }
@@ -69,24 +92,22 @@ impl Files {
     ///
     /// What went wrong with any records. Then no file has its name.
     pub fn finish(mut self) -> Result<Duration, StreamError> {
-        if self.out.is_none() && self.events.is_none() {
+        if !self.wanted.is_any() {
             return Ok(Duration::ZERO);
         }
-        let (files, took) = self.run()?.end()?;
+        let (files, took) = self.run().end()?;
         let _together = commit();
         files.into_iter().try_for_each(WholeFile::finish)?;
         Ok(took)
     }
 
-    fn run(&mut self) -> Result<&mut Running, StreamError> {
-        if self.running.is_none() {
+    fn run(&mut self) -> &mut Running {
+        self.running.get_or_insert_with(|| {
             let (sender, records) = sync_channel(0);
-            let (out, events, model) = (self.out.clone(), self.events.clone(), self.model.clone());
-            let notes = self.notes.clone();
-            let thread = spawn(move || write_all(out.as_deref(), events.as_deref(), &model, &notes, &records));
-            self.running = Some(Running { sender: Some(sender), thread: Some(thread) });
-        }
-        Ok(self.running.as_mut().expect("it has just begun"))
+            let wanted = self.wanted.clone();
+            let thread = spawn(move || wanted.write(&records));
+            Running { sender: Some(sender), thread: Some(thread) }
+        })
     }
 }
 
@@ -110,34 +131,46 @@ impl Drop for Running {
     }
 }
 
-fn write_all(
-    out: Option<&Path>,
-    events: Option<&Path>,
-    model: &Model,
-    notes: &[(&str, String)],
-    records: &Receiver<Vec<TraceRecord>>,
-) -> Result<Written, WriteError> {
-    let mut took = Duration::ZERO;
-    let mut out = out.map(|path| ResultWriter::create(path, model.scene())).transpose()?;
-    let mut events = events.map(|path| EventWriter::create(path, model.scene())).transpose()?;
-    for (key, value) in notes {
-        out.iter_mut().for_each(|out| out.note(key, value));
-        events.iter_mut().for_each(|events| events.note(key, value));
+impl Wanted {
+    fn is_any(&self) -> bool {
+        self.out.is_some() || self.events.is_some() || self.steps.is_some()
     }
-    for records in records {
-        let start = Instant::now();
-        for records in records.chunks(RECORDS) {
-            let (results, events) = rayon::join(
-                || out.as_mut().map_or(Ok(()), |w| w.write_all(model.scene(), records)),
-                || events.as_mut().map_or(Ok(()), |w| w.write_all(model.scene(), records)),
-            );
-            results.and(events)?;
+
+    /// Writes all that comes.
+    fn write(&self, evaluated: &Receiver<Evaluated>) -> Result<Written, WriteError> {
+        let mut took = Duration::ZERO;
+        let scene = self.model.scene();
+        let mut out = self.out.as_deref().map(|path| ResultWriter::create(path, scene)).transpose()?;
+        let mut events = self.events.as_deref().map(|path| EventWriter::create(path, scene)).transpose()?;
+        let steps = self.steps.as_ref().map(|(path, centres)| StepWriter::create(path, &self.model, centres));
+        let mut steps = steps.transpose()?;
+        for (key, value) in &self.notes {
+            out.iter_mut().for_each(|out| out.note(key, value));
+            events.iter_mut().for_each(|events| events.note(key, value));
+            steps.iter_mut().for_each(|steps| steps.note(key, value));
         }
-        took += start.elapsed();
+        for (traces, records) in evaluated {
+            let start = Instant::now();
+            let (rows, steps) = rayon::join(
+                || {
+                    records.chunks(RECORDS).try_for_each(|records| {
+                        let (results, events) = rayon::join(
+                            || out.as_mut().map_or(Ok(()), |w| w.write_all(scene, records)),
+                            || events.as_mut().map_or(Ok(()), |w| w.write_all(scene, records)),
+                        );
+                        results.and(events)
+                    })
+                },
+                || steps.as_mut().map_or(Ok(()), |w| w.write_all(&traces, &records)),
+            );
+            rows.and(steps)?;
+            took += start.elapsed();
+        }
+        let start = Instant::now();
+        // None appears before all are whole.
+        let out = out.map(ResultWriter::complete).transpose()?;
+        let events = events.map(EventWriter::complete).transpose()?;
+        let steps = steps.map(StepWriter::complete).transpose()?;
+        Ok(([out, events, steps].into_iter().flatten().collect(), took + start.elapsed()))
     }
-    let start = Instant::now();
-    // Neither appears before both are whole.
-    let out = out.map(ResultWriter::complete).transpose()?;
-    let events = events.map(EventWriter::complete).transpose()?;
-    Ok(([out, events].into_iter().flatten().collect(), took + start.elapsed()))
 }

@@ -6,6 +6,7 @@ use super::file_places::{explain, line_of, vanishing};
 use super::plan::{AnchorPlan, Plan};
 use super::plan_error::PlanError;
 use super::tally::Tallies;
+use crate::engine::Precision;
 use crate::geometry::number;
 use crate::read_file::{SETTINGS_MAX, read_text};
 
@@ -134,6 +135,13 @@ impl Plan {
             }
         }
         Tallies::check(&self.tallies)?;
+        let (outputs, count) = (&self.outputs, (!self.is_given()).then(|| run.count()));
+        for (key, chosen) in [("outputs.steps", &outputs.steps), ("outputs.points", &outputs.points)] {
+            chosen.as_ref().map_or(Ok(()), |chosen| chosen.check(key, count))?;
+        }
+        if outputs.steps.is_some() && run.precision == Precision::Fast {
+            return err("outputs.steps: are those of exact ropes; leave it out where run.precision is \"fast\"".into());
+        }
         for (name, value) in [("relative_error", self.until.relative_error), ("seconds", self.until.seconds)] {
             if value.is_some_and(|v| !(v.is_finite() && v > 0.0)) {
                 return err(format!("until.{name}: must be above 0"));

@@ -2,6 +2,8 @@
 
 mod assignment;
 mod blocks;
+mod choose;
+mod chosen;
 mod difference;
 mod estimate;
 mod file;
@@ -9,6 +11,7 @@ mod file_places;
 mod free_space;
 mod merge;
 mod moments;
+mod need;
 mod opened;
 mod order;
 mod paired;
@@ -30,11 +33,13 @@ mod tally;
 mod walk;
 
 pub use assignment::Assignment;
+pub use chosen::Chosen;
 pub use difference::{Differences, ErrorsFrom, MeanDifference, ShareDifference};
 pub use estimate::Estimate;
 pub use file::EXAMPLE;
 pub use merge::merge;
 pub(crate) use moments::Moments;
+pub use need::Held;
 pub use opened::Study;
 pub use plan::{AnchorPlan, OutputPlan, Plan, RunPlan, Sampled, ScenePlan, UntilPlan};
 pub use plan_error::{PlanError, PlanFault};

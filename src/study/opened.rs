@@ -17,7 +17,7 @@ use super::walk::Walks;
 use crate::example::{BuiltIn, NameError};
 use crate::geometry::{Shown, number};
 use crate::read_file::open;
-use crate::scene::{AnchorError, Model, Scene, read_scene_with};
+use crate::scene::{AnchorError, Centre, Model, Scene, read_scene_with};
 use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
 
 /// A study that can be run.
@@ -68,6 +68,7 @@ impl Study {
         let simplified = plan.run.trade().simplified(&models).map_err(|e| PlanError::at_key("run.simplify", e))?;
         let setting = Setting::new(&plan.tallies, simplified, bounds, plan.walk.steps());
         let tallies = Tallies::new(&plan.tallies, setting)?;
+        centres(&plan, tallies.setting.models[0].scene())?;
         let file = plan.scene.file.as_ref().map(|file| folder.join(file));
         Ok(Study { plan, tallies, given_models: models, walks, file, given, identity })
     }
@@ -86,6 +87,11 @@ impl Study {
     /// their number.
     pub fn models(&self) -> &[Arc<Model>] {
         &self.tallies.setting.models
+    }
+
+    /// About what it is counted how often the free ends go round, where every step is written.
+    pub fn centres(&self) -> Vec<Centre> {
+        centres(&self.plan, self.models()[0].scene()).expect("names were looked up before")
     }
 
     /// A hash of all that the answer depends on: the plan (but for what is written besides the summary), the scene, and
@@ -179,8 +185,8 @@ impl Study {
         settled.with_walked(Walked { still, met: 0 })
     }
 
-    /// A trace as ropes see it.
-    fn traded(&self, trace: SettledTrace) -> SettledTrace {
+    /// A trace as ropes see it: what the plan leaves out of it for speed is left out.
+    pub fn traded(&self, trace: SettledTrace) -> SettledTrace {
         let model = self.model(trace.id());
         self.plan.run.trade().coarsened(trace, model)
     }
@@ -254,10 +260,24 @@ pub(super) struct Source<'s> {
 }
 
 impl Source<'_> {
-    /// The traces with these numbers, in order; those before them are passed over.
+    /// The traces with these numbers, in order, as ropes see them; those before them are passed over.
     pub(super) fn take(&mut self, numbers: Range<u64>) -> Result<Vec<SettledTrace>, PlanError> {
+        let study = self.study;
+        self.take_with(numbers, |trace| study.traded(trace))
+    }
+
+    /// The same as they were drawn or given.
+    pub(super) fn take_whole(&mut self, numbers: Range<u64>) -> Result<Vec<SettledTrace>, PlanError> {
+        self.take_with(numbers, |trace| trace)
+    }
+
+    fn take_with(
+        &mut self,
+        numbers: Range<u64>,
+        then: impl Fn(SettledTrace) -> SettledTrace + Sync,
+    ) -> Result<Vec<SettledTrace>, PlanError> {
         let Some(reader) = &mut self.reader else {
-            return Ok(numbers.into_par_iter().map(|number| self.study.traded(self.study.drawn(number))).collect());
+            return Ok(numbers.into_par_iter().map(|number| then(self.study.drawn(number))).collect());
         };
         let there = self.next + skip(reader, numbers.start - self.next)?;
         if there < numbers.start {
@@ -271,12 +291,19 @@ impl Source<'_> {
             let Some(more) = more else {
                 return Err(self.study.too_few(there + settled.len() as u64));
             };
-            settled.par_extend(more.into_par_iter().map(|trace| self.study.traded(self.study.settled(trace))));
+            settled.par_extend(more.into_par_iter().map(|trace| then(self.study.settled(trace))));
         }
         match settled.iter().find_map(|t| t.violation()) {
             Some(violation) => Err(self.study.in_file(violation.to_string())),
             None => Ok(settled),
         }
+    }
+}
+
+fn centres(plan: &Plan, scene: &Scene) -> Result<Vec<Centre>, PlanError> {
+    match plan.outputs.about.as_slice() {
+        [] => Ok(scene.labelled()),
+        names => scene.called(names).map_err(|e| PlanError::at_key("outputs.about", e)),
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::chosen::Chosen;
 use super::tally::TallyPlan;
 use super::walk::WalkPlan;
 use crate::engine::Precision;
@@ -180,10 +181,22 @@ pub struct OutputPlan {
     pub traces: bool,
     /// Pictures and `report.html`.
     pub pictures: bool,
+    /// The rope after every step of some traces, in `steps.parquet`; of none without it. They are evaluated once more
+    /// when the study ends.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steps: Option<Chosen>,
+    /// For `steps`: about which obstacles it is counted how often the free end has gone round, by their labels or by
+    /// the numbers of wall ends; about all that have a label without it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub about: Vec<String>,
+    /// The points of some walks, in `points.parquet`, which `eval --traces` takes; of none without it. They are drawn
+    /// once more when the study ends.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<Chosen>,
 }
 
 impl Default for OutputPlan {
     fn default() -> Self {
-        OutputPlan { traces: false, pictures: true }
+        OutputPlan { traces: false, pictures: true, steps: None, about: Vec::new(), points: None }
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::example::NameError;
 use crate::read_error::ReadError;
-use crate::scene::AnchorError;
+use crate::scene::{AnchorError, UnknownObstacle};
 use crate::simplify::SimplifyError;
 
 /// What is wrong with a study: where, what, and what would be right.
@@ -51,6 +51,9 @@ pub enum PlanFault {
     /// The rope cannot be tied.
     #[error(transparent)]
     Anchor(#[from] AnchorError),
+    /// No obstacle is called so.
+    #[error(transparent)]
+    Obstacle(#[from] UnknownObstacle),
     /// The scene cannot be simplified.
     #[error(transparent)]
     Simplify(#[from] SimplifyError),

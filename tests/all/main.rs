@@ -27,6 +27,7 @@ mod shader;
 mod shown;
 mod simplify;
 mod simulated_again;
+mod steps;
 mod stride;
 mod study_truth;
 mod support;

@@ -8,8 +8,8 @@ use resvg::usvg::roxmltree::Document;
 use tautline::picture;
 use tautline::scene::Scene;
 use tautline::study::{
-    Bin, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, Plan, Quantile, Scalar, Stopped, Summary,
-    Survival, SurvivalPoint,
+    Bin, ByObstacle, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, ObstacleContacts, Plan, Quantile,
+    Scalar, Stopped, Summary, Survival, SurvivalPoint,
 };
 
 /// Random numbers that are the same everywhere.
@@ -185,6 +185,22 @@ fn answer(scene: &Scene) -> Summary {
             .iter()
             .map(|&(vertex, at)| Contact { vertex, at: at.into(), label: None, wraps: about(1.2), share: about(0.11) })
             .collect(),
+        by_obstacle: Some(ByObstacle {
+            contacts: about(2.5),
+            turns: about(1.5),
+            obstacles: near
+                .iter()
+                .map(|&(vertex, at)| ObstacleContacts {
+                    vertex,
+                    at: at.into(),
+                    label: Some("a <rock>".into()),
+                    walls: 9,
+                    contacts: about(1.25),
+                    turns: about(0.75),
+                    share: about(0.125),
+                })
+                .collect(),
+        }),
         map: Some(map),
     }
 }
@@ -233,7 +249,7 @@ fn a_study_has_all_pictures() {
     let summary = answer(&scene);
     let all = every_picture(&summary, &scene);
     let stems: Vec<&str> = all.iter().map(|(stem, ..)| stem.as_str()).collect();
-    assert_eq!(stems, ["histogram-length", "histogram-max-length", "survival", "map", "length-map", "ropes"]);
+    assert_eq!(stems, ["tether", "histogram-length", "histogram-max-length", "survival", "map", "length-map", "ropes"]);
     assert_eq!(all, picture::all(&summary, &scene), "the same answer must give the same bytes");
     for (stem, _, svg) in &all {
         assert!(svg.len() < 200_000, "{stem} has {} bytes", svg.len());
@@ -285,7 +301,7 @@ fn what_was_not_counted_has_no_picture() {
     summary.ropes.clear();
     summary.histograms[1].bins.clear();
     let all = every_picture(&summary, &scene);
-    assert_eq!(all.len(), 2);
+    assert_eq!(all.len(), 2, "without lengths nobody knows how many walks a tether holds");
     assert_eq!(texts(&all[1].2), ["Nothing was counted: greatest rope length"]);
 
     let mut summary = answer(&scene);
@@ -302,7 +318,7 @@ fn scenes_may_have_any_size_and_shape() {
         let scene = islands(unit);
         let all = every_picture(&answer(&scene), &scene);
         let unit = if unit > 1.0 { "10⁹ scene units)" } else { "10⁻⁹ scene units)" };
-        assert!(texts(&all[3].2).iter().any(|t| t == &format!("x ({unit}")), "{:?}", texts(&all[3].2));
+        assert!(texts(&all[4].2).iter().any(|t| t == &format!("x ({unit}")), "{:?}", texts(&all[4].2));
     }
     let wall = |a: [f64; 2], b: [f64; 2]| [DVec2::from(a), DVec2::from(b)];
     let far = [wall([1e9, 1e9], [1e9 + 3.0, 1e9 + 1.0]), wall([1e9, 1e9 + 2.0], [1e9 + 3.0, 1e9 + 2.0])];
@@ -341,7 +357,7 @@ fn marks_lie_where_their_numbers_say() {
         Bin { bin: 3, count: 4, share: share(0.4, 0.3, 0.5) },
     ];
     summary.histograms[0].bins = bins;
-    let svg = picture::histogram(&summary, "length");
+    let svg = picture::histogram(&summary, &scene, "length");
     let names = texts(&svg);
     for tick in ["0", "10", "20", "30", "40", "50", "1", "8", "share of traces (%)"] {
         assert!(names.iter().any(|t| t == tick), "{tick} is not in {names:?}");
@@ -360,7 +376,7 @@ fn marks_lie_where_their_numbers_say() {
 
 #[test]
 fn what_cannot_be_drawn_is_an_error() {
-    let svg = picture::histogram(&answer(&islands(1.0)), "length");
+    let svg = picture::histogram(&answer(&islands(1.0)), &islands(1.0), "length");
     assert!(matches!(picture::png(&svg, 0), Err(picture::PictureError::Size { .. })));
     assert!(matches!(picture::png(&svg, 1_000_000), Err(picture::PictureError::Size { .. })));
     assert!(matches!(picture::png("no picture", 10), Err(picture::PictureError::Svg(_))));
@@ -373,7 +389,7 @@ fn the_page_has_everything_and_needs_nothing() {
     let summary = answer(&scene);
     let pictures = picture::all(&summary, &scene).into_iter().map(|(_, title, svg)| (title, svg)).collect::<Vec<_>>();
     let run = serde_json::json!({"seconds": 12.5, "machine": {"adapter": "<none & nowhere>"}, "parts": [1, 2]});
-    let page = picture::page(&summary, &pictures, Some(&run));
+    let page = picture::page(&summary, &scene, &pictures, Some(&run));
     assert_eq!(page.matches("<svg ").count(), pictures.len());
     assert_eq!(page.matches("<figure>").count(), pictures.len());
     for absent in ["http:", "https:", "<script", "url(", "src=", "@import", "<sea", "<none", "& \"isles"] {
@@ -391,10 +407,65 @@ fn the_page_has_everything_and_needs_nothing() {
     // Ids must be those of one element in the whole page.
     let ids: Vec<&str> = page.split(" id=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
     assert_eq!(ids.iter().collect::<BTreeSet<_>>().len(), ids.len(), "{ids:?}");
+    // The answer comes first, then its picture, and then all else.
+    let sentence = picture::sentence(&summary, &scene).unwrap();
+    let places =
+        [&format!("<p class=\"answer\">{sentence}</p>"), "How many walks a tether holds", "<dl>", "<h2>Numbers"];
+    let places: Vec<usize> =
+        places.iter().map(|part| page.find(*part).unwrap_or_else(|| panic!("no {part}"))).collect();
+    assert!(places.is_sorted(), "{places:?}");
     if let Some(path) = std::env::var_os("TAUTLINE_TEST_PAGE") {
         std::fs::write(path, &page).unwrap();
     }
 
-    let bare = picture::page(&least(&scene), &[], None);
+    let bare = picture::page(&least(&scene), &scene, &[], None);
     assert!(!bare.contains("<figure") && !bare.contains("<h2>Run"));
+}
+
+#[test]
+fn the_sentence_has_the_highest_quantile_and_the_unit() {
+    let scene = islands(1.0);
+    let mut summary = answer(&scene);
+    let longest = summary.scalars.iter_mut().find(|s| s.name == "max_length").unwrap();
+    let value = Estimate { value: 366.8, error: None, low: Some(360.2), high: Some(371.9) };
+    longest.quantiles.push(tautline::study::Quantile { share: 0.995, value });
+    assert_eq!(picture::sentence(&summary, &scene).unwrap(), "99.5 % of the walks need at most 367 (360 to 372)");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.svg");
+    let drawing = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"90mm\" height=\"60mm\" viewBox=\"0 0 90 60\">\
+                   <path d=\"M3,4h50v20\" stroke=\"#000\" fill=\"none\"/></svg>";
+    std::fs::write(&path, drawing).unwrap();
+    let drawn = tautline::scene::read_scene(&path).unwrap();
+    assert_eq!(picture::sentence(&summary, &drawn).unwrap(), "99.5 % of the walks need at most 367 mm (360 to 372)");
+    // On every axis along which lengths go, in every picture.
+    for (stem, _, svg) in every_picture(&summary, &drawn) {
+        let texts = texts(&svg);
+        assert!(!texts.iter().any(|text| text.contains("scene unit")), "{stem}: {texts:?}");
+        assert!(stem == "ropes" || texts.iter().any(|text| text.contains("mm)")), "{stem}: {texts:?}");
+    }
+    let mut known = |low, high| {
+        let longest = summary.scalars.iter_mut().find(|s| s.name == "max_length").unwrap();
+        longest.quantiles.last_mut().unwrap().value = Estimate { low, high, ..value };
+        picture::sentence(&summary, &scene).unwrap()
+    };
+    assert!(known(Some(350.0), None).ends_with("at most 366.8 (350 or more)"), "{}", known(Some(350.0), None));
+    assert!(known(None, None).ends_with("at most 366.8"));
+    summary.traces = 0;
+    assert!(picture::sentence(&summary, &scene).is_none() && picture::tether(&summary, &scene).is_none());
+}
+
+#[test]
+fn the_curve_of_tethers_goes_from_none_to_all() {
+    let scene = islands(1.0);
+    let summary = answer(&scene);
+    let held = summary.held();
+    assert_eq!((held[0].share.value, held[held.len() - 1].share.value), (0.0, 1.0));
+    assert!(held.is_sorted_by(|a, b| a.length < b.length && a.share.value <= b.share.value));
+    let bins = &summary.histograms.iter().find(|h| h.name == "max_length").unwrap().bins;
+    let all: u64 = bins.iter().map(|bin| bin.count).sum();
+    let half = bins.len() / 2;
+    let below: u64 = bins[..half].iter().map(|bin| bin.count).sum();
+    let end = (bins[half - 1].bin + 1) as f64 * summary.histograms[1].width;
+    let there = held.iter().find(|h| h.length == end).unwrap();
+    assert_eq!(there.share.value, below as f64 / all as f64);
 }

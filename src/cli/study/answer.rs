@@ -5,8 +5,12 @@ use std::path::Path;
 use std::time::Duration;
 
 use anyhow::anyhow;
+use tautline::escape::escaped;
+use tautline::geometry::number;
+use tautline::picture::sentence;
+use tautline::scene::Scene;
 use tautline::session::{RunCost, RunReport, Session};
-use tautline::study::{AtWalls, Estimate, Stopped, Summary, quantity};
+use tautline::study::{AtWalls, Estimate, Stopped, Study, Summary, quantity};
 
 use crate::cli::failure::Failure;
 use crate::cli::words::{counted, grouped, short};
@@ -17,18 +21,29 @@ pub(super) fn print_answer(summary: &Summary) -> Result<(), Failure> {
     print_json(&serde_json::to_value(summary).map_err(|e| Failure::internal(e.into()))?)
 }
 
+/// The scene that an answer is about.
+fn scene(study: &Study) -> &Scene {
+    study.models()[0].scene()
+}
+
 /// Writes and prints the answer. Exit code 5 if it is not as certain as was asked for.
 pub(super) fn conclude(session: &Session, report: &RunReport, as_json: bool) -> Result<(), Failure> {
     let summary = session.conclude(report)?;
-    tell(&summary, report.run(), session.folder().path(), as_json)
+    tell(&summary, session.study(), report.run(), session.folder().path(), as_json)
 }
 
 /// Prints the answer that lies in `folder`. Exit code 5 if it is not as certain as was asked for.
-pub(super) fn tell(summary: &Summary, run: Option<&RunCost>, folder: &Path, as_json: bool) -> Result<(), Failure> {
+pub(super) fn tell(
+    summary: &Summary,
+    study: &Study,
+    run: Option<&RunCost>,
+    folder: &Path,
+    as_json: bool,
+) -> Result<(), Failure> {
     if as_json {
         print_answer(summary)?;
     } else {
-        print(&table(summary, run))?;
+        print(&table(summary, scene(study), run))?;
         print(&format!("\nwritten to {}\n", folder.display()))?;
     }
     match (summary.study.until.relative_error, summary.stopped) {
@@ -43,8 +58,8 @@ pub(super) fn tell(summary: &Summary, run: Option<&RunCost>, folder: &Path, as_j
 }
 
 /// What people want to see first.
-pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
-    let mut text = String::new();
+pub(super) fn table(summary: &Summary, scene: &Scene, run: Option<&RunCost>) -> String {
+    let mut text = tether(summary, scene);
     let mut line = |text_of: std::fmt::Arguments<'_>| {
         let _ = text.write_fmt(text_of);
         text.push('\n');
@@ -133,6 +148,19 @@ pub(super) fn table(summary: &Summary, run: Option<&RunCost>) -> String {
         let at = obstacle.label.as_ref().map_or(at.clone(), |label| format!("{label} {at}"));
         line(format_args!("  {at:24}  {:>7}  {}", percent(obstacle.wound.value), shares(&obstacle.wound)));
     }
+    if let Some(counted) = &summary.by_obstacle {
+        line(format_args!(
+            "\nby obstacle, a trace: {} contacts, {} turns at the end",
+            with_interval(&counted.contacts),
+            with_interval(&counted.turns)
+        ));
+        for touched in counted.obstacles.iter().take(5) {
+            let at = format!("({}, {})", short(touched.at[0]), short(touched.at[1]));
+            let at = touched.label.as_ref().map_or(at.clone(), |label| format!("{label} {at}"));
+            let contacts = with_interval(&touched.contacts);
+            line(format_args!("  {at:24}  {:>7} of the steps, {contacts} contacts", percent(touched.share.value)));
+        }
+    }
     if !summary.ropes.is_empty() {
         line(format_args!("\nmost common ropes at the end"));
     }
@@ -173,6 +201,34 @@ pub(super) fn standing(summary: &Summary) -> Option<String> {
         _ => String::new(),
     };
     Some(format!("{still} of the steps stood still{met}"))
+}
+
+/// The answer in one sentence and one picture: how much of each tether's length is needed by which share of the walks.
+fn tether(summary: &Summary, scene: &Scene) -> String {
+    let Some(sentence) = sentence(summary, scene) else { return String::new() };
+    let mut text = format!("{}\n\n", escaped(&sentence));
+    let longest = summary.scalars.iter().find(|scalar| scalar.name == "max_length");
+    let (quantiles, most) = longest.map_or((&[][..], 0.0), |scalar| (&scalar.quantiles[..], scalar.max));
+    for quantile in quantiles {
+        let length = quantile.value.value;
+        let marks = if most > 0.0 { (BAR * length / most).round() as usize } else { 0 };
+        let (share, length) = (format!("{} %", short_share(quantile.share)), short(length));
+        text += &format!("{share:>8} of them up to {length:>10}  {}\n", "#".repeat(marks));
+    }
+    text.push('\n');
+    text
+}
+
+/// How many marks stand for the greatest length.
+const BAR: f64 = 32.0;
+
+/// A share in percent, without zeros that say nothing.
+fn short_share(share: f64) -> String {
+    number((1e10 * share).round() / 1e8)
+}
+
+fn with_interval(estimate: &Estimate) -> String {
+    format!("{} ({})", short(estimate.value), interval(estimate))
 }
 
 fn interval(estimate: &Estimate) -> String {

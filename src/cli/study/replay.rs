@@ -3,11 +3,9 @@
 use std::path::PathBuf;
 
 use anyhow::anyhow;
-use glam::DVec2;
 use tautline::engine::{Engine, FastGpu, Job, Precision, Reference};
-use tautline::geometry::number as shortest;
 use tautline::gpu::{AdapterChoice, Device};
-use tautline::output::{EventWriter, check_output, write_whole};
+use tautline::output::{EventWriter, PointWriter, StepWriter, check_output};
 use tautline::picture::Drawing;
 use tautline::session::look;
 
@@ -16,6 +14,7 @@ use crate::cli::failure::Failure;
 use crate::cli::look::{Look, Target, write};
 use crate::cli::paths::{keep_apart, place};
 use crate::cli::print;
+use crate::cli::steps::StepArgs;
 use crate::cli::words::{counted, plainly, short};
 
 #[derive(Debug, clap::Args)]
@@ -30,9 +29,12 @@ pub(crate) struct Args {
     /// Where to write its wraps and unwraps: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
-    /// Where to write the points of the walk, as it was drawn or given: .csv, as `tautline eval --traces` takes them
-    #[arg(long, value_name = "FILE", value_parser = csv)]
+    /// Where to write the points of the walk, as it was drawn or given: .csv or .parquet, as `tautline eval --traces`
+    /// takes them
+    #[arg(long, value_name = "FILE", value_parser = of_points)]
     points: Option<PathBuf>,
+    #[command(flatten)]
+    every: StepArgs,
     /// Where to draw it: .svg, .png, or .html for a page that plays it
     #[arg(id = "picture", long = "draw", value_name = "FILE")]
     draw: Option<PathBuf>,
@@ -40,17 +42,12 @@ pub(crate) struct Args {
     look: Look,
 }
 
-/// The name of a .csv.
-fn csv(name: &str) -> Result<PathBuf, String> {
+/// The name of a file that `eval --traces` takes.
+fn of_points(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
-    let is_csv = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-    if is_csv { Ok(path) } else { Err("points are written as .csv".to_owned()) }
-}
-
-/// The points of the trace with that number as rows.
-fn rows(number: u64, points: &[DVec2]) -> String {
-    let rows = points.iter().map(|p| format!("{number},{},{}\n", shortest(p.x), shortest(p.y)));
-    std::iter::once("trace,x,y\n".to_owned()).chain(rows).collect()
+    let is_taken =
+        path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known)));
+    if is_taken { Ok(path) } else { Err("points are written as .csv or .parquet".to_owned()) }
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
@@ -63,8 +60,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             args.trace
         )));
     }
-    let [events, points, draw] = [&args.events, &args.points, &args.draw].map(Option::as_deref);
-    let outputs = [("--events", events), ("--points", points), ("--draw", draw)];
+    let [events, points, steps, draw] =
+        [&args.events, &args.points, &args.every.steps, &args.draw].map(Option::as_deref);
+    let outputs = [("--events", events), ("--points", points), ("--steps", steps), ("--draw", draw)];
     for (option, path) in outputs {
         if let Some(path) = path.filter(|path| place(path).starts_with(place(&args.folder))) {
             let shown = path.display();
@@ -76,7 +74,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let [scene, given] = study.files();
     keep_apart(&[("the study's scene.file", scene), ("the study's walk.file", given)], &outputs)?;
     let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
-    [&args.events, &args.points].into_iter().flatten().try_for_each(|path| check_output(path))?;
+    [events, points, steps].into_iter().flatten().try_for_each(check_output)?;
+    let centres = args.every.centres(model.scene())?;
     let target = args.draw.as_deref().map(|path| Target::new(path, &args.look)).transpose()?;
     let mut engine: Box<dyn Engine> = match plan.run.precision {
         Precision::Certified => Box::new(Reference::new(model.clone())),
@@ -92,8 +91,15 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         events.write(model.scene(), &record)?;
         events.finish()?;
     }
+    if let Some(path) = steps {
+        let mut steps = StepWriter::create(path, model, &centres)?;
+        steps.write_all(std::slice::from_ref(&trace), std::slice::from_ref(&record))?;
+        steps.finish()?;
+    }
     if let Some(path) = &args.points {
-        write_whole(path, rows(args.trace, &study.whole_trace(args.trace)?.ends()).as_bytes())?;
+        let mut points = PointWriter::create(path)?;
+        points.write(args.trace, &study.whole_trace(args.trace)?.ends())?;
+        points.finish()?;
     }
     print(&format!(
         "trace {}: {}, {}, rope length {} at the end, greatest {}, depth {} at the end\n",

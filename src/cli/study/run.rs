@@ -51,7 +51,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     if args.resume
         && let Some(summary) = answered(&out, &study, shard)?
     {
-        return tell_answer(&summary, None, &out, args.json);
+        return tell_answer(&summary, &study, None, &out, args.json);
     }
     // An engine that is refused leaves no folder behind.
     let engines = Engines::open(&args.engine, &study)?;

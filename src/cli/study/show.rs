@@ -32,5 +32,5 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let (file, shown) = (args.folder.join("summary.json"), args.folder.display());
         say!("note: {} does not hold this answer; `tautline study resume {shown}` writes it", file.display());
     }
-    if args.json { print_answer(&summary) } else { print(&table(&summary, None)) }
+    if args.json { print_answer(&summary) } else { print(&table(&summary, study.models()[0].scene(), None)) }
 }

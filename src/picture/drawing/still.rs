@@ -11,6 +11,7 @@ use crate::picture::label::{count, number, width};
 use crate::picture::plane::{Frame, View};
 use crate::picture::svg::{Align, Svg, px};
 use crate::picture::ticks::Ticks;
+use crate::picture::unit::unit;
 use crate::rope::Moment;
 use crate::scene::Scene;
 
@@ -109,6 +110,8 @@ pub(super) struct Plot {
     pub(super) frame: Frame,
     left: f64,
     y_ticks: Ticks,
+    /// What a unit of the plane is called.
+    unit: String,
 }
 
 impl Plot {
@@ -116,7 +119,7 @@ impl Plot {
         let y_ticks = Ticks::linear(view.low.y, view.high.y, 5);
         let left = MARGIN + 8.0 + y_ticks.width();
         let frame = Frame::fit(view, [0.0, 0.0], [WIDTH - left - MARGIN, HIGHEST]).of(scene);
-        Plot { frame, left, y_ticks }
+        Plot { frame, left, y_ticks, unit: unit(scene).to_owned() }
     }
 
     /// The picture, with what is `inside` the frame.
@@ -152,7 +155,7 @@ impl Plot {
             svg.line([left - 4.0, top + y], [left, top + y], &line);
             svg.text([left - 7.0, top + y + 4.0], Align::End, &words, name);
         }
-        let units = [x_ticks.unit("scene units"), self.y_ticks.unit("scene units")];
+        let units = [&x_ticks, &self.y_ticks].map(|ticks| ticks.unit(&self.unit));
         let text = match units {
             [x, y] if x == y => format!("x and y in {x}"),
             [x, y] => format!("x in {x}, y in {y}"),

@@ -9,6 +9,7 @@
 pub(super) mod anchors;
 mod batches;
 mod block;
+pub(super) mod by_obstacle;
 pub(super) mod contacts;
 pub(super) mod histograms;
 mod lengths;
@@ -29,6 +30,7 @@ mod winding;
 
 pub use anchors::AnchorAnswer;
 pub(super) use block::{Block, Counts, Tallies};
+pub use by_obstacle::{ByObstacle, ObstacleContacts};
 pub use contacts::Contact;
 pub use histograms::{Bin, Histogram};
 pub use map::{Cell, Map};

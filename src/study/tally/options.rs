@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 pub struct TallyPlan {
     /// How often intervals are to hold the truth, between 0 and 1.
     pub confidence: f64,
+    /// Which quantiles are given, between 0 and 1; the highest is that of the sentence with which an answer begins.
+    #[serde(skip_serializing_if = "are_usual")]
+    pub quantiles: Vec<f64>,
     /// Rope lengths: for each, when the rope first becomes longer (the survival curve).
     pub limits: Vec<f64>,
     /// How wide the bins of the histograms of lengths are; 0 for a power of two near a 64th of the scene's size.
@@ -19,17 +22,33 @@ pub struct TallyPlan {
     pub map_every: u32,
     /// How many of the most common taut ropes are reported.
     pub ropes: u32,
+    /// Whether contacts and turns are also counted by obstacle, however many wall ends of it a rope touches in a row.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub by_obstacle: bool,
     /// Whether the answer has that of each anchor too.
-    #[serde(skip_serializing_if = "is_off")]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub anchors: bool,
 }
 
-fn is_off(is: &bool) -> bool {
-    !is
+/// The quantiles that are given unless told otherwise.
+const QUANTILES: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99];
+
+fn are_usual(quantiles: &[f64]) -> bool {
+    quantiles == QUANTILES
 }
 
 impl Default for TallyPlan {
     fn default() -> Self {
-        TallyPlan { confidence: 0.95, limits: Vec::new(), bin: 0.0, map: 64, map_every: 8, ropes: 10, anchors: false }
+        TallyPlan {
+            confidence: 0.95,
+            quantiles: QUANTILES.to_vec(),
+            limits: Vec::new(),
+            bin: 0.0,
+            map: 64,
+            map_every: 8,
+            ropes: 10,
+            by_obstacle: false,
+            anchors: false,
+        }
     }
 }

@@ -12,6 +12,7 @@ use super::setting::Setting;
 use super::tally::Tally;
 use super::totals::Totals;
 use super::traced::{Size, Traced};
+use crate::geometry::number;
 use crate::rope::{EventKind, TraceRecord};
 use crate::study::estimate::{Confidence, Estimate};
 use crate::study::moments::Moments;
@@ -48,8 +49,8 @@ pub(in crate::study) fn scalar_names() -> [&'static str; ALL.len()] {
     ALL.map(|quantity| quantity.name)
 }
 
-/// Which quantiles are given.
-const QUANTILES: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99];
+/// How many quantiles there are at the most.
+const MOST: usize = 1000;
 
 /// What a scalar or a histogram of this name is about, in the words of every table, picture and page: those of the
 /// glossary in `docs/studies.md`.
@@ -91,7 +92,10 @@ fn of_rank(classes: &Classes, rank: u64) -> Option<u64> {
 }
 
 /// The tally of all scalars.
-pub(crate) struct Scalars;
+pub(crate) struct Scalars {
+    /// Of which shares quantiles are given, ascending.
+    quantiles: Vec<f64>,
+}
 
 /// What is counted of a block.
 #[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
@@ -143,15 +147,29 @@ impl Tally for Scalars {
     type Counts = ScalarCounts;
     type Answer = Vec<Scalar>;
 
-    fn new(_: &TallyPlan, _: &Setting) -> Result<Self, PlanError> {
-        Ok(Scalars)
+    fn check(options: &TallyPlan) -> Result<(), PlanError> {
+        if options.quantiles.is_empty() || options.quantiles.len() > MOST {
+            let count = options.quantiles.len();
+            return Err(PlanError::new(format!("tallies.quantiles: give 1 to {MOST} shares, not {count}")));
+        }
+        match options.quantiles.iter().find(|share| !(**share > 0.0 && **share < 1.0)) {
+            Some(bad) => Err(PlanError::new(format!("tallies.quantiles: {} is not between 0 and 1", number(*bad)))),
+            None => Ok(()),
+        }
+    }
+
+    fn new(options: &TallyPlan, _: &Setting) -> Result<Self, PlanError> {
+        let mut quantiles = options.quantiles.clone();
+        quantiles.sort_by(f64::total_cmp);
+        quantiles.dedup();
+        Ok(Scalars { quantiles })
     }
 
     fn add(&self, part: &mut Part, traced: &Traced<'_>) {
         for ((quantity, moments), classes) in ALL.iter().zip(&mut part.moments).zip(&mut part.classes) {
-            let number = (quantity.of)(traced.record);
-            moments.add(number);
-            *classes.entry(quantity.class(number)).or_default() += 1;
+            let value = (quantity.of)(traced.record);
+            moments.add(value);
+            *classes.entry(quantity.class(value)).or_default() += 1;
         }
     }
 
@@ -169,7 +187,7 @@ impl ScalarCounts {
     pub(super) fn answer(&self, traces: u64, confidence: &Confidence) -> Vec<Scalar> {
         // The least number below or at which that share of them lies.
         let rank = |share: f64| ((share * traces as f64).ceil() as u64).max(1);
-        let ends = QUANTILES.map(|share| (share, confidence.ranks(share, traces)));
+        let ends: Vec<_> = self.quantiles.iter().map(|&share| (share, confidence.ranks(share, traces))).collect();
         let scalar = |((quantity, moments), classes): ((&Quantity, Moments), &Classes)| {
             // A number's class is known, and that none is beyond the extremes.
             let quantile = |rank: u64| {
@@ -191,7 +209,7 @@ impl ScalarCounts {
                 deviation: moments.variance().map(f64::sqrt),
                 min: moments.min,
                 max: moments.max,
-                quantiles: ends.map(|(share, ends)| Quantile { share, value: estimate(share, ends) }).to_vec(),
+                quantiles: ends.iter().map(|&(share, ends)| Quantile { share, value: estimate(share, ends) }).collect(),
             }
         };
         ALL.iter().zip(self.moments()).zip(&self.classes).map(scalar).collect()

@@ -22,6 +22,9 @@ macro_rules! table {
             /// for it.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             anchors: Option<Vec<tally::AnchorAnswer>> = tally::anchors::Anchors;
+            /// Contacts and turns counted by obstacle, if the study asks for that.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            by_obstacle: Option<tally::ByObstacle> = tally::by_obstacle::Obstacles;
             /// The plane.
             map: Option<tally::Map> = tally::map::Cells;
         }

@@ -5,19 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 
 use crate::rope::Side;
-use crate::scene::Model;
-
-/// Walls that hang together by common ends.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Island {
-    /// The lowest number among its wall ends.
-    pub vertex: u32,
-    pub walls: u32,
-    /// The lowest number among its wall ends that have a label; `vertex` if none has.
-    pub named: u32,
-    /// The point about which the ropes' turns are counted: the middle of its first wall.
-    pub middle: DVec2,
-}
+use crate::scene::{Island, Model, all_islands};
 
 /// The islands of a scene, from left to right.
 #[derive(Debug)]
@@ -26,36 +14,7 @@ pub(crate) struct Islands(Vec<Island>);
 impl Islands {
     /// O(walls log walls).
     pub(crate) fn new(model: &Model) -> Self {
-        let walls = model.scene().walls();
-        // Each wall end's parent; the root has the lowest number.
-        let mut parents: Vec<u32> = (0..model.vertices().len() as u32).collect();
-        fn root(parents: &mut [u32], mut v: u32) -> u32 {
-            while parents[v as usize] != v {
-                parents[v as usize] = parents[parents[v as usize] as usize];
-                v = parents[v as usize];
-            }
-            v
-        }
-        for &[u, v] in walls {
-            let (u, v) = (root(&mut parents, u), root(&mut parents, v));
-            parents[u.max(v) as usize] = u.min(v);
-        }
-        let mut of: Vec<Option<Island>> = vec![None; model.vertices().len()];
-        for (wall, &[u, _]) in walls.iter().enumerate() {
-            let vertex = root(&mut parents, u);
-            let [a, b] = model.scene().ends(wall);
-            let middle = a / 2.0 + b / 2.0;
-            of[vertex as usize].get_or_insert(Island { vertex, walls: 0, named: vertex, middle }).walls += 1;
-        }
-        // From the last to the first, so that the first one stays.
-        for (v, _) in
-            (0..).zip(model.scene().labels()).filter(|(_, label)| label.is_some()).collect::<Vec<_>>().into_iter().rev()
-        {
-            if let Some(island) = &mut of[root(&mut parents, v) as usize] {
-                island.named = v;
-            }
-        }
-        let mut islands: Vec<Island> = of.into_iter().flatten().collect();
+        let mut islands = all_islands(model.scene());
         islands.sort_by(|a, b| a.middle.x.total_cmp(&b.middle.x).then(a.vertex.cmp(&b.vertex)));
         Islands(islands)
     }

@@ -3,6 +3,8 @@
 mod adapters;
 mod batches;
 mod bench;
+mod by_obstacle;
+mod chosen;
 mod convert;
 mod describe;
 mod draw;
@@ -18,6 +20,7 @@ mod results;
 mod safety;
 mod scenes;
 mod schema;
+mod steps;
 mod study;
 mod study_shared;
 mod study_sweep;

@@ -1,0 +1,86 @@
+//! Steps as the columns of a Parquet file.
+
+use std::mem::take;
+use std::sync::Arc;
+
+use arrow_array::{ArrayRef, Float64Array, Int64Array, UInt32Array, UInt64Array};
+use arrow_schema::{DataType, Field};
+use parquet::basic::Encoding;
+use parquet::file::properties::WriterPropertiesBuilder;
+
+use super::step_text::winding;
+use super::tables::Columns;
+use crate::rope::StepColumns;
+use crate::scene::Centre;
+
+/// How many rows a row group has: few groups, since the footer, which is held until the end, grows with them.
+const GROUP: usize = 1 << 20;
+
+/// Steps that are to be written, and what windings are about.
+pub(super) struct StepArrays {
+    columns: StepColumns,
+    windings: Vec<String>,
+}
+
+impl StepArrays {
+    pub(super) fn new(centres: &[Centre]) -> Self {
+        StepArrays::of(StepColumns::new(centres.len()), centres)
+    }
+
+    pub(super) fn of(columns: StepColumns, centres: &[Centre]) -> Self {
+        StepArrays { columns, windings: centres.iter().map(winding).collect() }
+    }
+}
+
+impl Columns for StepArrays {
+    fn fields(&self) -> Vec<Field> {
+        let fields = [
+            ("trace", DataType::UInt64, false),
+            ("step", DataType::UInt64, false),
+            ("x", DataType::Float64, false),
+            ("y", DataType::Float64, false),
+            ("length", DataType::Float64, false),
+            ("contacts", DataType::UInt32, false),
+            ("turns", DataType::UInt32, false),
+            ("pull_x", DataType::Float64, true),
+            ("pull_y", DataType::Float64, true),
+        ];
+        let fields = fields.into_iter().map(|(name, of, nullable)| Field::new(name, of, nullable));
+        fields.chain(self.windings.iter().map(|name| Field::new(name, DataType::Int64, false))).collect()
+    }
+
+    fn len(&self) -> usize {
+        self.columns.len()
+    }
+
+    fn take(&mut self) -> Vec<ArrayRef> {
+        let c = take(&mut self.columns);
+        self.columns = StepColumns::new(self.windings.len());
+        // Without a single rope of no length there is nothing to say of nulls.
+        let pulls = (!c.pulls.iter().all(|&pulls| pulls)).then(|| c.pulls.into());
+        let columns: Vec<ArrayRef> = vec![
+            Arc::new(UInt64Array::from(c.trace)),
+            Arc::new(UInt64Array::from(c.step)),
+            Arc::new(Float64Array::from(c.x)),
+            Arc::new(Float64Array::from(c.y)),
+            Arc::new(Float64Array::from(c.length)),
+            Arc::new(UInt32Array::from(c.contacts)),
+            Arc::new(UInt32Array::from(c.turns)),
+            Arc::new(Float64Array::new(c.pull_x.into(), pulls.clone())),
+            Arc::new(Float64Array::new(c.pull_y.into(), pulls)),
+        ];
+        let windings = c.windings.into_iter().map(|windings| Arc::new(Int64Array::from(windings)) as ArrayRef);
+        columns.into_iter().chain(windings).collect()
+    }
+
+    /// Numbers of steps grow by one, and hardly a float is there twice: dictionaries of them are work for nothing.
+    fn properties(&self, builder: WriterPropertiesBuilder) -> WriterPropertiesBuilder {
+        let builder = ["x", "y", "length", "pull_x", "pull_y"]
+            .into_iter()
+            .fold(builder, |builder, name| builder.set_column_dictionary_enabled(name.into(), false));
+        builder
+            .set_column_dictionary_enabled("step".into(), false)
+            .set_column_encoding("step".into(), Encoding::DELTA_BINARY_PACKED)
+            .set_max_row_group_row_count(Some(GROUP))
+    }
+}
