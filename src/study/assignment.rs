@@ -11,7 +11,9 @@ use super::plan_error::{PlanError, PlanFault};
 ///
 /// ```
 /// use tautline::study::Assignment;
-/// assert!(["walk.step=2", "walk.kind=uniform", "scene.anchor=[[0, 0], [1, 2]]"].map(str::parse::<Assignment>).iter().all(Result::is_ok));
+/// for text in ["walk.step=2", "walk.kind=uniform", "scene.anchor=[[0, 0], [1, 2]]"] {
+///     assert!(text.parse::<Assignment>().is_ok());
+/// }
 /// assert!("walk.step".parse::<Assignment>().unwrap_err().contains("such as walk.step=2"));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
