@@ -14,8 +14,8 @@ const SHOWN: &str = "max_length";
 const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
 
 /// The mean greatest rope length of each study with its interval, and its quantiles, against the values of the key that
-/// differs. Of two keys each value of the second has a line of its own, without quantiles; of more the studies stand side
-/// by side. `None` before any study has an answer.
+/// differs. Of two keys each value of the second has a line of its own, without quantiles; of more the studies stand
+/// side by side. `None` before any study has an answer.
 pub fn sweep(answer: &SweepAnswer) -> Option<String> {
     let (axis, lines) = axis_and_lines(answer);
     let is_one = lines.len() == 1;

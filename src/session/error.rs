@@ -47,7 +47,10 @@ pub enum SessionError {
         cause: io::Error,
     },
     /// The folder is that of a sweep.
-    #[error("{0} is the folder of a sweep, which has several studies; give one of theirs, such as {0}/point-000", folder.display())]
+    #[error(
+        "{0} is the folder of a sweep, which has several studies; give one of theirs, such as {0}/point-000",
+        folder.display()
+    )]
     IsSweep {
         /// The folder.
         folder: PathBuf,

@@ -29,8 +29,9 @@ impl SweepFolder {
         path.join(SWEEP).exists()
     }
 
-    /// The folder `path` for part `shard` of each study of a sweep: it is made, or holds that already. The studies' files
-    /// are named from `base`. Where it `may_raise` the number of traces, the folder may hold the sweep with fewer.
+    /// The folder `path` for part `shard` of each study of a sweep: it is made, or holds that already. The studies'
+    /// files are named from `base`. Where it `may_raise` the number of traces, the folder may hold the sweep with
+    /// fewer.
     ///
     /// # Errors
     ///

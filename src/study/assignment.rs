@@ -11,7 +11,9 @@ use super::plan_error::{PlanError, PlanFault};
 ///
 /// ```
 /// use tautline::study::Assignment;
-/// assert!(["walk.step=2", "walk.kind=uniform", "scene.anchor=[[0, 0], [1, 2]]"].map(str::parse::<Assignment>).iter().all(Result::is_ok));
+/// for text in ["walk.step=2", "walk.kind=uniform", "scene.anchor=[[0, 0], [1, 2]]"] {
+///     assert!(text.parse::<Assignment>().is_ok());
+/// }
 /// assert!("walk.step".parse::<Assignment>().unwrap_err().contains("such as walk.step=2"));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -78,7 +80,8 @@ pub(super) fn assign(table: &mut Table, key: &str, value: Value) -> Result<(), P
         let what = format!("it is no table here, so it has no `{rest}`");
         return Err(PlanError::at_key(outer, PlanFault::Value(what)));
     };
-    assign(inner, rest, value).map_err(|error| PlanError { key: Some(key.to_owned()), ..error })
+    assign(inner, rest, value)
+        .map_err(|error| PlanError { key: error.key.map(|key| format!("{outer}.{key}")), ..error })
 }
 
 /// Has keys with dots in their names be keys in tables, as they are without quotes: a table that is written so can be
@@ -149,6 +152,6 @@ mod tests {
         let twice: Table = "'b.c' = 5\n[b]\nc = 3\n".parse().unwrap();
         assert_eq!(nested(twice).unwrap_err().what(), "b.c: it is there twice");
         let told = assign(&mut table, "b.c.x", Value::Integer(1)).unwrap_err();
-        assert_eq!(told.what(), "b.c.x: it is no table here, so it has no `x`");
+        assert_eq!(told.what(), "b.c: it is no table here, so it has no `x`");
     }
 }

@@ -75,8 +75,8 @@ impl StudyFile {
         let mut schema = Plan::schema();
         let whole = serde_json::json!({ "type": "integer", "minimum": 0, "maximum": MOST_POINTS - 1 });
         schema["properties"][SWEEP] = serde_json::json!({
-            "description": "Keys of the study, each with a list of values: a study for each of them. Names of keys may be \
-                written with dots, or nested as tables are.",
+            "description": "Keys of the study, each with a list of values: a study for each of them. Names of keys may \
+                be written with dots, or nested as tables are.",
             "type": "object",
             "properties": { AGAINST: whole },
         });
@@ -165,7 +165,7 @@ impl Sweep {
         self.keys.iter().any(|swept| covers(&swept.name, key))
     }
 
-    /// What is wrong with the study of a point, with its place: the value of a key, or what the file says of all points.
+    /// What is wrong with the study of a point, with its place: the value of a key, or what the file says of all.
     #[must_use]
     pub fn located(&self, error: PlanError, point: usize) -> PlanError {
         if error.is_placed() {

@@ -129,8 +129,8 @@ pub(super) fn tell_answer(folder: &SweepFolder, answer: &SweepAnswer, as_json: b
     match unmet[..] {
         [] => Ok(()),
         _ => Err(Failure::unmet(anyhow!(
-            "until.relative_error: the mean greatest length is not as certain as was asked for in {}; more traces would \
-             help",
+            "until.relative_error: the mean greatest length is not as certain as was asked for in {}; more traces \
+             would help",
             unmet.join(", ")
         ))),
     }

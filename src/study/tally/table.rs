@@ -18,8 +18,8 @@ macro_rules! table {
             /// The wall ends with which ropes had contacts, those with the greatest share of steps first, at most a
             /// thousand.
             contacts: Vec<tally::Contact> = tally::contacts::Contacts;
-            /// What the ropes of each anchor say, in the order of the anchors; `None` unless `study.tallies.anchors` asks
-            /// for it.
+            /// What the ropes of each anchor say, in the order of the anchors; `None` unless `study.tallies.anchors`
+            /// asks for it.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             anchors: Option<Vec<tally::AnchorAnswer>> = tally::anchors::Anchors;
             /// Contacts and turns counted by obstacle, if the study asks for that.

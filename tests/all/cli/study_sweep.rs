@@ -80,12 +80,12 @@ fn a_value_that_is_set_stands_for_the_files() {
         ("wlak.step=2", &["error: --set: wlak: unknown field `wlak`", "did you mean `walk`?"]),
         ("walk.step=-1", &["error: --set: walk.step: -1 is no length of a step"]),
         ("walk.step=far", &["error: --set: walk.step: invalid type: string \"far\", expected f64"]),
-        ("walk.step.x=1", &["error: --set: walk.step", "no table"]),
+        ("walk.step.x=1", &["error: --set: walk.step: it is no table here, so it has no `x`"]),
         ("walk.step=1e-400", &["--set", "walk.step: 1e-400 is too small"]),
         ("walk.step=[1", &["--set", "walk.step: the value cannot be read as TOML"]),
         ("walk.step", &["--set", "KEY=VALUE"]),
         ("walk.step=1000", &["error: --set: walk.step: "]),
-        ("scene.anchor=[1e9,0]", &["error: --set: scene.anchor"]),
+        ("scene.anchor=here", &["error: --set: scene.anchor must be [x, y]"]),
         ("scene.built_in=halls", &["error: --set: scene.built_in: no built-in scene is called \"halls\""]),
     ] {
         folder.refused(2, &format!("study run one.toml --out no --set {set}"), parts);
