@@ -49,7 +49,7 @@ pub struct RopeStep {
 /// while let Some(step) = steps.next() {
 ///     turns.push((step.turns, steps.windings().next()));
 /// }
-/// assert_eq!(turns, [(0, Some(0)), (1, Some(0)), (1, Some(0)), (2, Some(0)), (2, Some(1))]);
+/// assert_eq!(turns, [(0, Some(0)), (0, Some(0)), (1, Some(0)), (1, Some(0)), (2, Some(1))]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Steps<'a> {

@@ -47,7 +47,6 @@ impl Summary {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::study::{EXAMPLE, Plan, Shard, State, Study};
 
     #[test]
