@@ -232,7 +232,7 @@ impl Account {
         }
     }
 
-    /// What the run came to: after the last traces, with how long it took, and the engine and the job that evaluated it.
+    /// What the run came to: after the last traces, with how long it took, and the engine and the job that did it.
     pub fn report(self, engine: &dyn Engine, job: &Job, times: &Times, total: Duration) -> Report {
         let Traded { jumps, crossing_traces, crossing_steps, .. } = self.traded;
         let [vertices, vertices_left] = [&self.terms.given, &self.terms.used].map(|m| m.vertices().len() as u64);

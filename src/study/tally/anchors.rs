@@ -16,7 +16,7 @@ use crate::study::estimate::Confidence;
 use crate::study::plan_error::PlanError;
 
 /// The tally of each anchor's ropes; `None` where it is not asked for.
-pub(crate) struct Anchors(Option<Limits>);
+pub(crate) struct Anchors(Option<(Scalars, Limits)>);
 
 /// What is counted of an anchor's first traces of a block.
 #[derive(Clone, Default, Serialize, Deserialize, JsonSchema)]
@@ -81,31 +81,35 @@ impl Tally for Anchors {
     type Answer = Option<Vec<AnchorAnswer>>;
 
     fn new(options: &TallyPlan, setting: &Setting) -> Result<Self, PlanError> {
-        Ok(Anchors(options.anchors.then(|| Limits::new(options, setting)).transpose()?))
+        let asked =
+            || -> Result<_, PlanError> { Ok((Scalars::new(options, setting)?, Limits::new(options, setting)?)) };
+        Ok(Anchors(options.anchors.then(asked).transpose()?))
     }
 
     fn add(&self, part: &mut Self::Part, traced: &Traced<'_>) {
-        let Some(limits) = &self.0 else { return };
+        let Some((scalars, limits)) = &self.0 else { return };
         part.resize_with(part.len().max(traced.anchor + 1), AnchorPart::default);
         let own = &mut part[traced.anchor];
         own.traces += 1;
-        Scalars.add(&mut own.scalars, traced);
+        scalars.add(&mut own.scalars, traced);
         let all = limits.exceeded(traced.record.max_length);
         own.longer.resize(own.longer.len().max(all), 0);
         own.longer[..all].iter_mut().for_each(|longer| *longer += 1);
     }
 
     fn finish(&self, part: Self::Part, block: &Size) -> Self::Counts {
+        let Some((tally, _)) = &self.0 else { return Vec::new() };
         let finish = |AnchorPart { traces, scalars, longer }| AnchorCounts {
             traces,
-            scalars: Scalars.finish(scalars, block),
+            scalars: tally.finish(scalars, block),
             longer,
         };
         part.into_iter().map(finish).collect()
     }
 
     fn answer(&self, counts: &Self::Counts, _: &Totals, setting: &Setting) -> Self::Answer {
-        let (limits, confidence) = (self.0.as_ref()?.limits(), &setting.confidence);
+        let (scalars, limits) = self.0.as_ref()?;
+        let (limits, confidence) = (limits.limits(), &setting.confidence);
         let is_there = |counts: &AnchorCounts| counts.traces > 0;
         let first = counts.first().filter(|counts| is_there(counts));
         let of = |(anchor, counts): (usize, &AnchorCounts)| {
@@ -116,7 +120,7 @@ impl Tally for Anchors {
             AnchorAnswer {
                 at: setting.models[anchor].anchor().into(),
                 traces: counts.traces,
-                scalars: counts.scalars.answer(counts.traces, confidence),
+                scalars: scalars.told(&counts.scalars, counts.traces, confidence),
                 within: limits.iter().enumerate().map(within).collect(),
                 differences: first.filter(|_| anchor > 0).map(|first| counts.differences(first, limits, confidence)),
             }

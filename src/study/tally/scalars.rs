@@ -178,13 +178,13 @@ impl Tally for Scalars {
     }
 
     fn answer(&self, counts: &ScalarCounts, totals: &Totals, setting: &Setting) -> Vec<Scalar> {
-        counts.answer(totals.traces.sum, &setting.confidence)
+        self.told(counts, totals.traces.sum, &setting.confidence)
     }
 }
 
-impl ScalarCounts {
-    /// What they say of so many traces.
-    pub(super) fn answer(&self, traces: u64, confidence: &Confidence) -> Vec<Scalar> {
+impl Scalars {
+    /// What the counts of so many traces say.
+    pub(super) fn told(&self, counts: &ScalarCounts, traces: u64, confidence: &Confidence) -> Vec<Scalar> {
         // The least number below or at which that share of them lies.
         let rank = |share: f64| ((share * traces as f64).ceil() as u64).max(1);
         let ends: Vec<_> = self.quantiles.iter().map(|&share| (share, confidence.ranks(share, traces))).collect();
@@ -212,7 +212,7 @@ impl ScalarCounts {
                 quantiles: ends.iter().map(|&(share, ends)| Quantile { share, value: estimate(share, ends) }).collect(),
             }
         };
-        ALL.iter().zip(self.moments()).zip(&self.classes).map(scalar).collect()
+        ALL.iter().zip(counts.moments()).zip(&counts.classes).map(scalar).collect()
     }
 }
 
