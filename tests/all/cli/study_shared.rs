@@ -29,7 +29,10 @@ fn start(folder: &Folder, args: &str) -> Child {
 
 /// Waits until a study is under way in that folder.
 fn wait_for(folder: &Folder, child: &mut Child, run: &str) {
-    while !folder.path(&format!("{run}/state.bin")).exists() || leases(folder, run).is_empty() {
+    // The lease of one that was stopped before may be there still.
+    let process = Some(child.id());
+    let is_held = || leases(folder, run).iter().any(|lease| holder(folder, run, lease) == process);
+    while !folder.path(&format!("{run}/state.bin")).exists() || !is_held() {
         assert!(child.try_wait().unwrap().is_none(), "it has ended");
         sleep(Duration::from_millis(5));
     }
@@ -37,6 +40,13 @@ fn wait_for(folder: &Folder, child: &mut Child, run: &str) {
 
 fn send(signal: &str, child: &Child) {
     assert!(Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status().unwrap().success());
+}
+
+/// The process that holds a lease, if it is there and written.
+fn holder(folder: &Folder, run: &str, lease: &str) -> Option<u32> {
+    let text = fs::read_to_string(folder.path(&format!("{run}/{lease}"))).ok()?;
+    let holder: serde_json::Value = serde_json::from_str(&text).ok()?;
+    holder["process"].as_u64()?.try_into().ok()
 }
 
 /// The leases in a study's folder.
