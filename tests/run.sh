@@ -84,7 +84,7 @@ if [ "$(uname)" = Linux ]; then
         arithmetic:: batch:: cli::adapters:: cli::engines:: decide:: shader:: \
         engine_table::golden engine_table::what_suits engine_table::windows engine_table::forgetting engine_table::a_stopped \
         fast::a_contact fast::a_fast_engine fast::lists fast::no_trace fast::points \
-        filter::devices filter::no_walk filter::without
+        filter::devices filter::no_walk filter::without rays::
 fi
 say "a study's page in a browser"
 tests/page.sh
