@@ -23,9 +23,11 @@ impl SweepAnswer {
             let mean = |point: &PointAnswer| point.scalar(name).map(|scalar| scalar.mean);
             self.push(&mut sheet, &format!("{name}_mean"), mean);
             self.push(&mut sheet, &format!("{name}_mean_difference"), |point| point.mean_difference(name));
-            for (place, share) in self.quantiles() {
-                let of = |point: &PointAnswer| point.scalar(name)?.quantiles.get(place).map(|q| q.value);
-                let name = format!("{name}_q{}", number(100.0 * share));
+            for share in self.quantiles() {
+                let of = |point: &PointAnswer| {
+                    point.scalar(name)?.quantiles.iter().find(|q| q.share == share).map(|q| q.value)
+                };
+                let name = format!("{name}_q{}", hundredths(share));
                 for (ending, part) in &PARTS[..] {
                     // Quantiles have no standard error.
                     if *ending != "_error" {
@@ -55,10 +57,13 @@ impl SweepAnswer {
         }
     }
 
-    /// The shares of which quantiles are given, with their places.
-    fn quantiles(&self) -> Vec<(usize, f64)> {
-        let scalar = self.points.iter().find_map(|point| point.scalars.first());
-        scalar.map_or(Vec::new(), |scalar| scalar.quantiles.iter().map(|q| q.share).enumerate().collect())
+    /// The shares of which quantiles are given, ascending: those of all points, since they may be swept too.
+    fn quantiles(&self) -> Vec<f64> {
+        let scalars = self.points.iter().filter_map(|point| point.scalars.first());
+        let mut shares: Vec<f64> = scalars.flat_map(|scalar| scalar.quantiles.iter().map(|q| q.share)).collect();
+        shares.sort_by(f64::total_cmp);
+        shares.dedup();
+        shares
     }
 
     /// Four columns: an estimate with its error and its interval.
@@ -76,3 +81,25 @@ type Taken = fn(&Estimate) -> Option<f64>;
 /// How the columns of an estimate's parts end.
 const PARTS: [(&str, Taken); 4] =
     [("", |e| Some(e.value)), ("_error", |e| e.error), ("_low", |e| e.low), ("_high", |e| e.high)];
+
+/// A share between 0 and 1 in hundredths. Its point is moved in the text, since 100 times 0.29 is not 29.
+fn hundredths(share: f64) -> String {
+    let digits = format!("{share}");
+    let digits = digits.trim_start_matches("0.");
+    let (whole, rest) = digits.split_at(digits.len().min(2));
+    let whole = format!("{whole:0<2}");
+    let whole = if whole == "00" { "0" } else { whole.trim_start_matches('0') };
+    if rest.is_empty() { whole.to_owned() } else { format!("{whole}.{rest}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::hundredths;
+
+    #[test]
+    fn shares_are_named_by_their_hundredths() {
+        let shares = [0.5, 0.05, 0.29, 0.999, 0.001, 0.07, 0.5000000000000001, 1e-7];
+        let names = ["50", "5", "29", "99.9", "0.1", "7", "50.00000000000001", "0.00001"];
+        assert_eq!(shares.map(hundredths), names);
+    }
+}
