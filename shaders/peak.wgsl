@@ -22,13 +22,14 @@ fn peak(@builtin(global_invocation_id) id: vec3<u32>) {
     if lane >= arrayLength(&results) {
         return;
     }
+    let rounds = work[0].rounds;
     let factor = work[0].factor;
     let addend = work[0].addend;
     var a = vec4(f32(lane), 1.0, 2.0, 3.0);
     var b = a + vec4(4.0);
     var c = a + vec4(8.0);
     var d = a + vec4(12.0);
-    for (var round = 0u; round < work[0].rounds; round++) {
+    for (var round = 0u; round < rounds; round++) {
         a = a * factor + addend;
         b = b * factor + addend;
         c = c * factor + addend;

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use bytemuck::{Pod, Zeroable};
 
+use super::adapter::AdapterKind;
 use super::once::Once;
 use super::{Device, GpuError};
 
@@ -13,8 +14,13 @@ pub const PEAK_WGSL: &str = include_str!("../../shaders/peak.wgsl");
 /// How many lanes a workgroup has; the same number stands in the shader.
 const WORKGROUP: u32 = 64;
 
-/// How many workgroups there are: enough to fill the largest devices several times.
-const WORKGROUPS: u32 = 1 << 14;
+/// How many workgroups there are: enough to fill the largest devices several times, or the threads of a software one.
+const fn workgroups(kind: AdapterKind) -> u32 {
+    match kind {
+        AdapterKind::Software => 1 << 8,
+        _ => 1 << 14,
+    }
+}
 
 /// How many products a lane has a round, and as many sums; `PRODUCTS` in the shader.
 const PRODUCTS: u32 = 64;
@@ -50,12 +56,13 @@ impl Device {
     /// # Ok::<(), tautline::gpu::GpuError>(())
     /// ```
     pub fn peak(&self) -> Result<f64, GpuError> {
-        let lanes = (WORKGROUPS * WORKGROUP) as usize;
+        let workgroups = workgroups(self.summary().kind);
+        let lanes = (workgroups * WORKGROUP) as usize;
         let kernel = Once::new(self, "peak", PEAK_WGSL, size_of::<Work>(), lanes * size_of::<f32>())?;
         let time = |rounds| {
             let work = Work { rounds, factor: 0.5, addend: 1.0, unused: 0 };
             let start = Instant::now();
-            kernel.run::<f32>(bytemuck::bytes_of(&work), WORKGROUPS)?;
+            kernel.run::<f32>(bytemuck::bytes_of(&work), workgroups)?;
             Ok(start.elapsed())
         };
         let mut rounds = 1;

@@ -8,7 +8,9 @@ use crate::candidates::{Blocks, LISTS_BUDGET, List, Lists, Query};
 use crate::engine::progress::Progress;
 use crate::engine::table::Open;
 use crate::engine::{Engine, EngineError, EngineKind, Job, Phase, Precision, Promise};
-use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass, HALVES, RAYS_WGSL, TryingAll, Tuning};
+use crate::gpu::{
+    AdapterKind, AdapterSummary, Device, GpuError, GpuPass, HALVES, Kernel, RAYS_WGSL, TryingAll, Tuning,
+};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::SettledTrace;
@@ -36,7 +38,13 @@ impl GpuRays {
     ///
     /// What the device complains of, or what of its f32 exact ropes cannot rely on.
     pub fn new(device: Device, model: Arc<Model>) -> Result<Self, GpuError> {
-        let tuning = device.tuning();
+        let Tuning { queries, workgroup } = device.tuning();
+        // A lane takes several queries. A software adapter shares workgroups out over its threads, so smaller ones keep
+        // all of them busy; a GPU wants whole waves.
+        let tuning = match device.summary().kind {
+            AdapterKind::Software => Tuning { queries, workgroup: (workgroup / TryingAll::QUERIES).max(1) },
+            _ => Tuning { queries, workgroup },
+        };
         Self::with(device, model, tuning, RAYS_WGSL)
     }
 
