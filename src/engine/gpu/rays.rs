@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::rounds::{self, Asked, Astray, Player, Shared, Tools};
 use crate::candidates::{Blocks, LISTS_BUDGET, List, Lists, Query};
-use crate::engine::progress::Progress;
 use crate::engine::table::Open;
+use crate::engine::windows::Windows;
 use crate::engine::{Engine, EngineError, EngineKind, Job, Phase, Precision, Promise};
 use crate::gpu::{
     AdapterKind, AdapterSummary, Device, GpuError, GpuPass, HALVES, Kernel, RAYS_WGSL, TryingAll, Tuning,
@@ -90,14 +90,14 @@ impl Engine for GpuRays {
     }
 }
 
-/// A trace of which each leg is asked about by itself, and again after each of its events.
-struct OneLeg(Progress);
+/// A trace of which each leg is asked about by itself, and what is left of it again after each of its events.
+struct OneLeg(Windows);
 
 impl Player for OneLeg {
     type Kernel = TryingAll;
 
     fn new() -> Self {
-        OneLeg(Progress::new())
+        OneLeg(Windows::new())
     }
 
     fn start(&mut self, model: &Model, trace: &SettledTrace) {
@@ -105,29 +105,26 @@ impl Player for OneLeg {
     }
 
     fn finished(&mut self, trace: &SettledTrace) -> Option<TraceRecord> {
-        self.0.is_done(trace).then(|| self.0.record(trace))
+        self.0.finished(trace)
     }
 
     fn at(&self) -> usize {
-        self.0.at
+        self.0.at()
     }
 
-    fn ask(&mut self, shared: &Shared<'_>, trace: &SettledTrace, _: &mut Tools) -> Option<Asked<TryingAll>> {
-        let lists = shared.lists;
-        let model = lists.model();
+    fn ask(&mut self, shared: &Shared<'_>, trace: &SettledTrace, tools: &mut Tools) -> Option<Asked<TryingAll>> {
+        let (lists, job) = (shared.lists, shared.job);
+        let (model, list) = (lists.model(), lists.all());
+        let query = job
+            .time(Phase::Queries, || self.0.ask(lists.frame(), trace, shared.window, shared.simd, &mut tools.slopes));
         if trace.breaks_rules() {
             // Where a trace crosses walls, the rope's last leg is not free, and it can meet anything.
-            let all = 0..model.vertices().len() as u32;
-            shared.job.count_tests(all.len() as u64);
-            self.0.next(model, trace, all);
+            self.0.try_all(model, trace);
+            job.count_tests(list.len() as u64);
             return None;
         }
-        let list = lists.all();
-        let query = shared.job.time(Phase::Queries, || {
-            let (a, b) = (trace.points()[self.0.at], trace.points()[self.0.at + 1]);
-            Query { count: list.len() as u32, ..Query::leg(lists.frame(), self.0.rope.pivot(), a, b) }
-        });
-        let pivot = model.pivot(self.0.rope.contacts().last().map(|contact| contact.vertex));
+        let pivot = self.0.pivot(model);
+        let query = Query { count: list.len() as u32, ..query };
         Some(Asked { pivot, key: lists.key(pivot, list), list: Arc::clone(list), query })
     }
 
@@ -139,11 +136,17 @@ impl Player for OneLeg {
         blocks: &Blocks,
         tools: &mut Tools,
     ) -> Result<(), Astray> {
-        tools.found.clear();
+        let Tools { slopes, found, .. } = tools;
+        found.clear();
         for ranks in blocks.ranks(list.len()) {
-            shared.simd.sweep_some(list, query, ranks, &mut tools.found);
+            shared.simd.sweep_some(list, query, ranks, found);
         }
-        self.0.next(shared.lists.model(), trace, tools.found.iter().copied());
+        if found.is_empty() && self.0.is_quiet() {
+            self.0.pass_by(trace);
+        } else {
+            self.0.recall(trace, shared.simd, slopes);
+            self.0.go_on(shared.lists.model(), trace, found, shared.simd, slopes);
+        }
         Ok(())
     }
 }
