@@ -84,8 +84,8 @@ fn eval_sums_up_in_json() {
     assert!(report["on"].as_str().unwrap().contains("software"), "{}", report["on"]);
     assert!(report["steps_per_second"].as_f64().unwrap() > 0.0);
     let by_reference = self::report(&folder, "eval --scene s.geojson --traces t.csv --json --engine reference");
-    // Every wall end in each of the 12 steps and again after each of the 5 events.
-    let tests = 17 * by_reference["scene"]["vertices"].as_u64().unwrap();
+    // Every wall end on each of 14 legs, 12 steps and two moves from the anchor, and again after each of the 5 events.
+    let tests = 19 * by_reference["scene"]["vertices"].as_u64().unwrap();
     assert!(by_reference["tests"] == tests && by_reference["tests_per_second"].as_f64().unwrap() > 0.0);
     assert_eq!(by_reference["scene"], scene(Value::Null));
 }
