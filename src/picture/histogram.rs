@@ -76,11 +76,11 @@ pub fn histogram(summary: &Summary, scene: &Scene, name: &str) -> String {
         svg.line([x, top], [x, ground], &style);
         known.push((style, format!("mean {}", estimate(&mean))));
     }
-    if let Some(median) = scalar.and_then(|s| s.quantiles.iter().find(|q| q.share == 0.5)) {
-        let x = chart.x.within(median.value.value);
+    if let Some(median) = scalar.and_then(|s| s.quantile(0.5)) {
+        let x = chart.x.within(median.value);
         let style = format!("stroke=\"{BLUE}\" stroke-width=\"2\" stroke-dasharray=\"5 3\"");
         svg.line([x, top], [x, ground], &style);
-        known.push((style, format!("median {}", number(median.value.value, None))));
+        known.push((style, format!("median {}", number(median.value, None))));
     }
     chart.axes(&mut svg, (what, unit(scene)), ("share of traces", "%"));
     legend(&mut svg, [left, 18.0], &known);

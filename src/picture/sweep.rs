@@ -80,7 +80,7 @@ fn mean(point: &PointAnswer) -> Option<Estimate> {
 }
 
 fn quantile(point: &PointAnswer, share: f64) -> Option<Estimate> {
-    point.scalar(SHOWN)?.quantiles.iter().find(|q| q.share == share).map(|q| q.value)
+    point.scalar(SHOWN)?.quantile(share)
 }
 
 /// What a line looks like, and its marks.

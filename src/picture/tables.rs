@@ -61,8 +61,7 @@ pub(super) fn quantiles(summary: &Summary) -> String {
     let rows = shares.iter().map(|&share| {
         let name = if share == 0.5 { "median".into() } else { format!("{} %", number(100.0 * share, None)) };
         let of = |s: &Scalar| {
-            let quantile = s.quantiles.iter().find(|q| q.share == share);
-            quantile.map_or_else(|| "–".into(), |q| whole(&q.value).unwrap_or_else(|| plain(&q.value)))
+            s.quantile(share).map_or_else(|| "–".into(), |value| whole(&value).unwrap_or_else(|| plain(&value)))
         };
         std::iter::once(name).chain(summary.scalars.iter().map(of)).collect()
     });

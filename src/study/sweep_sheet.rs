@@ -24,9 +24,7 @@ impl SweepAnswer {
             self.push(&mut sheet, &format!("{name}_mean"), mean);
             self.push(&mut sheet, &format!("{name}_mean_difference"), |point| point.mean_difference(name));
             for share in self.quantiles() {
-                let of = |point: &PointAnswer| {
-                    point.scalar(name)?.quantiles.iter().find(|q| q.share == share).map(|q| q.value)
-                };
+                let of = |point: &PointAnswer| point.scalar(name)?.quantile(share);
                 let name = format!("{name}_q{}", hundredths(share));
                 for (ending, part) in &PARTS[..] {
                     // Quantiles have no standard error.

@@ -113,8 +113,7 @@ pub(super) fn table(summary: &Summary, scene: &Scene, run: Option<&RunCost>) -> 
         "most"
     ));
     for scalar in &summary.scalars {
-        let quantile =
-            |share| scalar.quantiles.iter().find(|q| q.share == share).map_or(String::new(), |q| short(q.value.value));
+        let quantile = |share| scalar.quantile(share).map_or(String::new(), |quantile| short(quantile.value));
         let name = quantity(&scalar.name);
         line(format_args!(
             "{name:24}{:>10}  {:>24}{:>10}{:>10}{:>10}",

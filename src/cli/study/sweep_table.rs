@@ -17,10 +17,7 @@ pub(super) fn table(answer: &SweepAnswer) -> String {
         against.folder
     );
     text += &format!("\n{}\n", quantity(SHOWN));
-    let quantile = |point: &PointAnswer, share: f64| {
-        let scalar = point.scalar(SHOWN)?;
-        scalar.quantiles.iter().find(|q| q.share == share).map(|q| short(q.value.value))
-    };
+    let quantile = |point: &PointAnswer, share: f64| point.scalar(SHOWN)?.quantile(share).map(|q| short(q.value));
     text += &lines(answer, &["median", "95 %"], short, |point| {
         let known = [quantile(point, 0.5), quantile(point, 0.95)].map(|cell| cell.unwrap_or(NONE.to_owned())).to_vec();
         (point.scalar(SHOWN).map(|scalar| scalar.mean), point.mean_difference(SHOWN), known)

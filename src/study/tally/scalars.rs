@@ -234,6 +234,13 @@ pub struct Scalar {
     pub quantiles: Vec<Quantile>,
 }
 
+impl Scalar {
+    /// The quantile of this share, if it is one of those that are given. O(quantiles).
+    pub fn quantile(&self, share: f64) -> Option<Estimate> {
+        self.quantiles.iter().find(|quantile| quantile.share == share).map(|quantile| quantile.value)
+    }
+}
+
 /// A quantile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Quantile {
