@@ -237,7 +237,7 @@ class Scene:
                 polars, pyarrow, DuckDB, or a dict of arrays, with the columns ``trace``, ``x``, ``y``. Rows of one
                 trace follow each other and numbers of traces increase: sort by trace and step. A column ``step`` may
                 not go back; without it rows that are out of order cannot be told from a walk.
-            engine: ``cpu``, ``gpu``, ``gpu-rays``, ``reference``, ``funnel`` or ``note``; without it the one that suits
+            engine: ``cpu``, ``gpu``, ``gpu-windows``, ``gpu-rays``, ``reference``, ``funnel`` or ``note``; without it the one that suits
                 the machine.
             precision: ``certified``, or ``fast`` for the engine gpu: f32 decides alone, and ropes can be wrong.
             on_violation: ``error`` raises at the first trace that crosses a wall; ``flag`` marks such traces in the

@@ -220,4 +220,4 @@ def test_the_second_call_finds_what_the_first_made(rooms: Scene, walks: np.ndarr
     other = scene.tied(walks[3, 60])
     back = other.evaluate([walks[3, 60::-1]])
     assert back["length"][0] == pytest.approx(first.lengths[3, 60], rel=1e-12)
-    assert {"gpu", "cpu", "gpu-rays", "reference", "funnel", "note"} == {name for name, _ in core.engines()}
+    assert {"gpu", "cpu", "gpu-windows", "gpu-rays", "reference", "funnel", "note"} == {name for name, _ in core.engines()}

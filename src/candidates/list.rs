@@ -1,9 +1,11 @@
 //! A list of vertices to be tried.
 
+use std::sync::OnceLock;
+
 use glam::DVec2;
 
 use super::places::{Places, VERTICES};
-use super::{Frame, Rank};
+use super::{Fan, Frame, Rank};
 use crate::scene::Model;
 
 /// How many vertices share a distance, that of the nearest: few, so that a query tries few too many; several, so that
@@ -20,6 +22,7 @@ pub struct List {
     /// The square of the distance from the pivot of the first vertex of each group, as its [`key`]; `None` where the
     /// list is for any pivot.
     nearest: Option<Box<[u32]>>,
+    fan: OnceLock<Fan>,
     /// The last is filled up with NaN, which lies in no triangle.
     pub(super) places: Box<[Places]>,
 }
@@ -58,7 +61,7 @@ impl List {
             let p = frame.place(model.vertices()[v as usize]).as_vec2();
             (block.x[i], block.y[i], block.numbers[i]) = (p.x, p.y, v);
         }
-        List { len, reach, nearest, places: places.into() }
+        List { len, reach, nearest, fan: OnceLock::new(), places: places.into() }
     }
 
     /// Whether it serves queries whose points are all no further from the pivot than the square root of `squared`, in
@@ -76,6 +79,19 @@ impl List {
         // Both are rounded: to 4 units in the last place each.
         let most = key(squared * (1.0 + 16.0 * f64::EPSILON));
         (GROUP * nearest.partition_point(|&nearest| nearest <= most)).min(self.len)
+    }
+
+    /// The fan of its pivot, which stands at `pivot`; `None` if the list is for any. Made when it is first asked for.
+    #[inline]
+    pub fn fan(&self, model: &Model, pivot: DVec2) -> Option<&Fan> {
+        self.nearest.as_ref()?;
+        Some(self.fan.get_or_init(|| Fan::new(model, pivot, self.numbers())))
+    }
+
+    /// The square of the distance from the pivot beyond which vertices may be missing.
+    #[inline]
+    pub fn reach(&self) -> f64 {
+        self.reach
     }
 
     /// Whether it is for queries about any pivot.
@@ -117,9 +133,10 @@ impl List {
         all.take(self.len).map(|(&x, &y)| [x, y])
     }
 
-    /// The memory that it takes, in bytes.
+    /// The memory that it takes, in bytes, its fan included.
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + size_of_val(self.nearest.as_deref().unwrap_or_default()) + size_of_val(&*self.places)
+        let fan = if self.is_of_any() { 0 } else { Fan::BYTES * self.len };
+        size_of::<Self>() + fan + size_of_val(self.nearest.as_deref().unwrap_or_default()) + size_of_val(&*self.places)
     }
 }
 

@@ -4,7 +4,9 @@
 //! decides among the few vertices that it names.
 
 mod blocks;
+mod fan;
 mod frame;
+mod grid;
 mod list;
 mod lists;
 mod numbers;
@@ -17,7 +19,9 @@ mod window;
 use bytemuck::{Pod, Zeroable};
 
 pub use blocks::{BLOCK, BLOCKS, Blocks};
+pub use fan::{Fan, NO_VERTEX, certain_turn};
 pub use frame::Frame;
+pub use grid::Grid;
 pub use list::List;
 pub use lists::{LISTS_BUDGET, Lists};
 pub use numbers::{DevicePlace, ListKey, Rank};

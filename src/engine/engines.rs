@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::table::{EngineKind, Opened, Options, Why};
-use super::{CPU, EngineError, FUNNEL, GPU, GPU_RAYS, NOTE, REFERENCE};
+use super::{CPU, EngineError, FUNNEL, GPU, GPU_RAYS, GPU_WINDOWS, NOTE, REFERENCE};
 use crate::gpu::{AdapterChoice, Device};
 use crate::scene::Model;
 
 /// All engines, in the order in which they are offered. A new one is a file of its own, with what the table says of it,
 /// and a line here; it is then known to the command line, and tested for what it promises.
-pub static ENGINES: [&EngineKind; 6] = [&GPU, &CPU, &GPU_RAYS, &REFERENCE, &FUNNEL, &NOTE];
+pub static ENGINES: [&EngineKind; 7] = [&GPU, &CPU, &GPU_WINDOWS, &GPU_RAYS, &REFERENCE, &FUNNEL, &NOTE];
 
 impl EngineKind {
     /// The engine called `name`.

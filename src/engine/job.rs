@@ -41,6 +41,7 @@ impl Phase {
 pub struct Job {
     steps: AtomicU64,
     tests: AtomicU64,
+    doubts: AtomicU64,
     stop: AtomicBool,
     timed: bool,
     nanoseconds: [AtomicU64; Phase::ALL.len()],
@@ -68,6 +69,11 @@ impl Job {
         self.tests.load(Ordering::Relaxed)
     }
 
+    /// How many steps the CPU has decided for a device that was not certain of them.
+    pub fn doubts(&self) -> u64 {
+        self.doubts.load(Ordering::Relaxed)
+    }
+
     /// The time spent in a phase, summed over threads; zero unless the job is [timed](Self::timed) and the engine has
     /// the phase.
     pub fn phase(&self, phase: Phase) -> Duration {
@@ -85,6 +91,10 @@ impl Job {
 
     pub(crate) fn count_tests(&self, tests: u64) {
         self.tests.fetch_add(tests, Ordering::Relaxed);
+    }
+
+    pub(crate) fn count_doubts(&self, steps: usize) {
+        self.doubts.fetch_add(steps as u64, Ordering::Relaxed);
     }
 
     pub(crate) fn is_timed(&self) -> bool {

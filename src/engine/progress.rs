@@ -80,11 +80,57 @@ impl Progress {
                 Some(kind)
             }
             None => {
-                self.wraps_left = self.wraps_of_a_leg;
-                self.arrive(trace);
+                self.end_leg(trace);
                 None
             }
         }
+    }
+
+    /// Goes on to the next point: the leg has no more events.
+    pub(super) fn end_leg(&mut self, trace: &SettledTrace) {
+        self.wraps_left = self.wraps_of_a_leg;
+        self.arrive(trace);
+    }
+
+    /// Wraps the rope round `vertex`, which stands at `at`: the next event of the leg from point `at`, in which the
+    /// rope turns by `dir`. `None` if the leg has had all wraps that it can have.
+    pub(super) fn wrap(&mut self, trace: &SettledTrace, vertex: u32, at: DVec2, dir: f64) -> Option<()> {
+        self.wraps_left = self.wraps_left.checked_sub(1)?;
+        let (o, side) = (self.rope.pivot(), Side::of(dir));
+        self.rope.push(vertex, at, side);
+        self.sweep = Sweep::After { dir, x: o, y: at, wrapped: true };
+        self.note(trace, EventKind::Wrap, vertex, side);
+        Some(())
+    }
+
+    /// Unwraps the rope from its pivot: as [`wrap`](Self::wrap). `None` if it has none, or cannot turn that way there.
+    pub(super) fn unwrap(&mut self, trace: &SettledTrace, dir: f64) -> Option<()> {
+        let (x, y) = (self.rope.prior(), self.rope.pivot());
+        self.rope.contacts().last().filter(|c| c.side != Side::of(dir))?;
+        let left = self.rope.pop()?;
+        self.sweep = Sweep::After { dir, x, y, wrapped: false };
+        self.note(trace, EventKind::Unwrap, left.vertex, left.side);
+        Some(())
+    }
+
+    /// Ends the leg on which the rope has turned, if it has, and goes on to point `to`, on the way to which nothing
+    /// happens. No point on the way is further than `within` from the pivot. `None` if `to` lies behind.
+    pub(super) fn go_to(&mut self, trace: &SettledTrace, to: usize, within: f64) -> Option<()> {
+        if self.at < to && self.start_direction().is_some() {
+            self.end_leg(trace);
+        }
+        if self.at < to {
+            let from = self.at;
+            let (length, _) = self.rope.base();
+            // Most spans hold no rope that is longer than all before.
+            let farthest = if length + within <= self.max_length {
+                0.0
+            } else {
+                farthest(self.rope.pivot(), &trace.points()[from + 1..=to])
+            };
+            self.skip(trace, to, || farthest);
+        }
+        (self.at == to).then_some(())
     }
 
     /// Writes an event of the leg from point `at` down.
@@ -152,4 +198,17 @@ impl Progress {
             events: std::mem::take(&mut self.events),
         }
     }
+}
+
+/// The square of the greatest distance of `points` from `o`.
+fn farthest(o: DVec2, points: &[DVec2]) -> f64 {
+    let greater = |a: f64, b: f64| if a > b { a } else { b };
+    let (blocks, rest) = points.as_chunks::<8>();
+    let mut most = [0.0; 8];
+    for block in blocks {
+        for (most, p) in most.iter_mut().zip(block) {
+            *most = greater(*most, p.distance_squared(o));
+        }
+    }
+    rest.iter().map(|p| p.distance_squared(o)).chain(most).fold(0.0, greater)
 }

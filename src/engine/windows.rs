@@ -16,7 +16,7 @@ pub(crate) const FIRST_WINDOW: usize = 16;
 
 /// How far a trace has come, and the window that was asked for last.
 pub(super) struct Windows {
-    progress: Progress,
+    pub(super) progress: Progress,
     /// How many legs the next window should have.
     width: usize,
     /// The window asked for; `None` for a single leg that spreads too far for one.

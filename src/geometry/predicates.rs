@@ -4,7 +4,7 @@ use glam::DVec2;
 use robust::Coord;
 
 /// Of which share of its two products an area must be to have the right sign: Shewchuk's bound `ccwerrboundA`.
-const CERTAIN: f64 = (3.0 + 8.0 * f64::EPSILON) * (f64::EPSILON / 2.0);
+pub(crate) const CERTAIN: f64 = (3.0 + 8.0 * f64::EPSILON) * (f64::EPSILON / 2.0);
 
 fn coord(p: DVec2) -> Coord<f64> {
     Coord { x: p.x, y: p.y }

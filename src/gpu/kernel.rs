@@ -112,6 +112,8 @@ mod tests {
 
     use super::super::arithmetic::Outcome;
     use super::super::buffers::PAGE_BYTES;
+    use super::super::drag::{DRAG_WGSL, Job};
+    use super::super::lane::{DONE, Lane, NOTES, RIGHT, RUNS, STACK, STOPPED, UNWRAPPED};
     use super::super::pages::PAGE_VERTICES;
     use super::super::pass::Span;
     use super::super::peak::PEAK_WGSL;
@@ -136,7 +138,7 @@ mod tests {
     #[test]
     fn the_shaders_are_valid() {
         use naga::valid::{Capabilities, ValidationFlags, Validator};
-        for wgsl in [SWEEP_WGSL, RAYS_WGSL, DECIDE_WGSL, PROBE_WGSL, PEAK_WGSL] {
+        for wgsl in [SWEEP_WGSL, RAYS_WGSL, DECIDE_WGSL, DRAG_WGSL, PROBE_WGSL, PEAK_WGSL] {
             Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&shader(wgsl)).unwrap();
         }
     }
@@ -168,6 +170,14 @@ mod tests {
             layout(&module, "Answer"),
             (size_of::<Answer>() as u32, members!(Answer: leg, place, dir, unused, at))
         );
+        let module = shader(DRAG_WGSL);
+        let lane = members!(
+            Lane: point, last, pivot, low, depth, deeper, does, events, way, back, farthest, number
+        );
+        let (size, members) = layout(&module, "Lane");
+        assert_eq!((size, &members[..lane.len()]), (size_of::<Lane>() as u32, &lane[..]));
+        let job = members!(Job: lanes, turns, looks, anchor);
+        assert_eq!(layout(&module, "Job"), (size_of::<Job>() as u32, job));
         let module = shader(PROBE_WGSL);
         let sample = members!(Sample: normal, p, q, a, b, origin, offset, dir);
         assert_eq!(layout(&module, "Sample"), (size_of::<Sample>() as u32, sample));
@@ -193,6 +203,13 @@ mod tests {
         assert!(RAYS_WGSL.contains(&format!("const QUERIES: u32 = {}u;", TryingAll::QUERIES)));
         assert!(RAYS_WGSL.contains(&format!("const BLOCK: u32 = {BLOCK}u;")));
         assert!(RAYS_WGSL.contains(&format!("const BLOCKS: u32 = {BLOCKS}u;")));
+        for (name, number) in
+            [("STACK", STACK as u32), ("LOG", NOTES as u32), ("RUNS", RUNS), ("DONE", DONE), ("STOPPED", STOPPED)]
+        {
+            assert!(DRAG_WGSL.contains(&format!("const {name}: u32 = {number}u;")), "{name}");
+        }
+        assert!(DRAG_WGSL.contains(&format!("const UNWRAP: u32 = {UNWRAPPED:#x}u;")));
+        assert!(DRAG_WGSL.contains(&format!("{RIGHT:#x}u")));
         assert!(DECIDE_WGSL.contains(&format!("const NOTHING: u32 = {NOTHING:#x}u;")));
         assert!(DECIDE_WGSL.contains(&format!("const UNWRAP: u32 = {:#x}u;", UNWRAP.0)));
         assert!(DECIDE_WGSL.contains(&format!("const MARGIN: f32 = {};", 2f64.powi(-18))));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 use tautline::candidates::{LISTS_BUDGET, Lists, Query, ROOM, Simd};
-use tautline::engine::{Cpu, Engine, EngineError, Funnel, Gpu, Job, Note, Reference};
+use tautline::engine::{Cpu, Engine, EngineError, Funnel, GpuWindows, Job, Note, Reference};
 use tautline::example::{Walker, floor_plan, random_walls, walks};
 use tautline::gpu::{SWEEP_WGSL, Tuning};
 use tautline::rope::TraceRecord;
@@ -18,10 +18,10 @@ fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
     engine.evaluate(traces, &Job::new()).unwrap()
 }
 
-/// The `gpu` engine with rounds of a given number of queries, that asks the GPU about every pivot.
-fn gpu(model: &Arc<Model>, queries: usize) -> Gpu {
+/// The engine `gpu-windows` with rounds of a given number of queries, that asks the GPU about every pivot.
+fn gpu(model: &Arc<Model>, queries: usize) -> GpuWindows {
     let tuning = Tuning { queries, workgroup: 64 };
-    Gpu::with(software(), Lists::new(model.clone()).after(0), LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
+    GpuWindows::with(software(), Lists::new(model.clone()).after(0), LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
 }
 
 fn settled(model: &Model, traces: &[Trace]) -> Vec<SettledTrace> {
@@ -146,7 +146,7 @@ fn lists_of_several_pages() {
     agree(&model, &traces);
     let tuning = Tuning { queries: 64, workgroup: 64 };
     let all = Lists::new(model.clone()).keep_all();
-    let mut engine = Gpu::with(software(), all, LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap();
+    let mut engine = GpuWindows::with(software(), all, LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap();
     assert_eq!(run(&mut engine, &traces), run(&mut Reference::new(model.clone()), &traces));
 }
 
@@ -168,7 +168,8 @@ fn lists_that_do_not_fit_the_budget_are_made_again() {
     let traces = settled(&model, &walks(&model, Walker { step: 0.8, steps: 100, seed: 4 }, 150));
     let tuning = Tuning { queries: 7, workgroup: 64 };
     let mut gpu =
-        Gpu::with(software(), Lists::new(model.clone()).after(0).budget(1 << 14), 0, tuning, SWEEP_WGSL).unwrap();
+        GpuWindows::with(software(), Lists::new(model.clone()).after(0).budget(1 << 14), 0, tuning, SWEEP_WGSL)
+            .unwrap();
     assert_eq!(run(&mut gpu, &traces), run(&mut Reference::new(model.clone()), &traces));
     assert!(gpu.pass().emptied() > 2, "{} blocks were emptied", gpu.pass().emptied());
 }

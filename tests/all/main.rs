@@ -7,6 +7,7 @@ mod cli;
 mod conservative;
 mod corpus;
 mod decide;
+mod drag;
 mod drawings;
 mod engine_table;
 mod examples;

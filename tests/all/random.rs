@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
 use tautline::candidates::{Lists, Simd};
-use tautline::engine::{Cpu, Engine, Funnel, Gpu, Job, Reference};
+use tautline::engine::{Cpu, Engine, Funnel, GpuWindows, Job, Reference};
 use tautline::gpu::{SWEEP_WGSL, Tuning};
 use tautline::rope::{EventKind, Status, TraceRecord, replay};
 use tautline::scene::Model;
@@ -197,7 +197,7 @@ fn how_traces_are_batched_changes_nothing() {
             for pool in &pools {
                 pool.install(|| {
                     assert_eq!(run(&mut Cpu::with_lists(lists()).window(window), &mixed), expected);
-                    let gpu = Gpu::with(adapter.clone(), lists(), 0, tuning, SWEEP_WGSL).unwrap();
+                    let gpu = GpuWindows::with(adapter.clone(), lists(), 0, tuning, SWEEP_WGSL).unwrap();
                     assert_eq!(run(&mut gpu.window(window), &mixed), expected);
                 });
             }

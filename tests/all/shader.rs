@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use tautline::candidates::{LISTS_BUDGET, Lists};
-use tautline::engine::{Engine, Gpu, Job, Reference};
+use tautline::engine::{Engine, GpuWindows, Job, Reference};
 use tautline::example::{Walker, floor_plan, walks};
 use tautline::gpu::{GpuError, SWEEP_WGSL, Tuning};
 use tautline::scene::Model;
@@ -51,7 +51,7 @@ fn found_out(model: &Arc<Model>, keep_all: bool, walker: Walker, count: u64, cha
     let agrees = |wgsl: &str| {
         let lists = if keep_all { Lists::new(model.clone()).keep_all() } else { Lists::new(model.clone()).after(0) };
         let tuning = Tuning { queries: 64, workgroup: 64 };
-        let mut engine = Gpu::with(device.clone(), lists, LISTS_BUDGET, tuning, wgsl).unwrap();
+        let mut engine = GpuWindows::with(device.clone(), lists, LISTS_BUDGET, tuning, wgsl).unwrap();
         let mut evaluate = || engine.evaluate(&traces, &Job::new());
         match evaluate() {
             Ok(records) => records == truth,
@@ -76,14 +76,16 @@ fn a_device_outlives_a_shader_that_it_refuses() {
     let model = Arc::new(Model::new(floor_plan(), None).unwrap());
     let device = software();
     let tuning = |queries| Tuning { queries, workgroup: 64 };
-    let broken_engine = |wgsl| Gpu::with(device.clone(), Lists::new(model.clone()), LISTS_BUDGET, tuning(8), wgsl);
+    let broken_engine =
+        |wgsl| GpuWindows::with(device.clone(), Lists::new(model.clone()), LISTS_BUDGET, tuning(8), wgsl);
     for broken in ["this is no shader", "@compute @workgroup_size(64) fn other() {}"] {
         let Err(error) = broken_engine(broken) else { panic!("{broken} was taken") };
         assert!(matches!(error, GpuError::Failed { .. }), "{error}");
     }
     let traces = [settle(&model, &walks(&model, Walker { step: 0.3, steps: 50, seed: 3 }, 1)[0])];
     // No room at all is room for one.
-    let mut engine = Gpu::with(device.clone(), Lists::new(model.clone()), LISTS_BUDGET, tuning(0), SWEEP_WGSL).unwrap();
+    let mut engine =
+        GpuWindows::with(device.clone(), Lists::new(model.clone()), LISTS_BUDGET, tuning(0), SWEEP_WGSL).unwrap();
     let truth = Reference::new(model.clone()).evaluate(&traces, &Job::new()).unwrap();
     assert_eq!(engine.evaluate(&traces, &Job::new()).unwrap(), truth);
 }

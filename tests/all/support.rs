@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use serde::Deserialize;
 use tautline::candidates::{LISTS_BUDGET, Lists};
-use tautline::engine::Gpu;
+use tautline::engine::GpuWindows;
 use tautline::gpu::{AdapterChoice, Device, SWEEP_WGSL};
 use tautline::rope::{TraceRecord, replay};
 use tautline::scene::{Model, Scene};
@@ -88,15 +88,15 @@ pub(crate) fn software() -> Device {
     device
 }
 
-/// The `gpu` engine on the software adapter, which it asks about every pivot.
-pub(crate) fn gpu(model: &Arc<Model>) -> Gpu {
+/// The engine `gpu-windows` on the software adapter, which it asks about every pivot.
+pub(crate) fn gpu(model: &Arc<Model>) -> GpuWindows {
     gpu_on(software(), Lists::new(model.clone()).after(0))
 }
 
-/// The `gpu` engine on `device` for these lists.
-pub(crate) fn gpu_on(device: Device, lists: Lists) -> Gpu {
+/// The engine `gpu-windows` on `device` for these lists.
+pub(crate) fn gpu_on(device: Device, lists: Lists) -> GpuWindows {
     let tuning = device.tuning();
-    Gpu::with(device, lists, LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
+    GpuWindows::with(device, lists, LISTS_BUDGET, tuning, SWEEP_WGSL).unwrap()
 }
 
 /// 20,000 wall ends: more vertices than two uniform buffers hold.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::deciding::Hasty;
-use super::rounds::{self, NAME};
+use super::{GPU, rounds};
 use crate::candidates::{LISTS_BUDGET, Lists};
 use crate::engine::{Engine, EngineError, Job, Precision, WINDOW};
 use crate::gpu::{AdapterSummary, DECIDE_WGSL, Deciding, Device, GpuError, GpuPass, HALVES, Tuning};
@@ -71,7 +71,7 @@ impl FastGpu {
 
 impl Engine for FastGpu {
     fn name(&self) -> &'static str {
-        NAME
+        GPU.name
     }
 
     fn precision(&self) -> Option<Precision> {

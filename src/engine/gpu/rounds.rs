@@ -15,9 +15,6 @@ use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
 use crate::visibility::Scratch;
 
-/// What the engine is called, in either precision.
-pub(super) const NAME: &str = "gpu";
-
 /// Takes a trace from query to query, then the next one: it asks, and goes on by what the device answers.
 pub(super) trait Player: Send {
     /// What answers it.

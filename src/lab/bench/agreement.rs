@@ -126,7 +126,7 @@ mod tests {
         wrong[4].events.pop();
         let count = right[4].events.len();
         let error = agreement.check(GPU, &wrong).unwrap_err();
-        assert_eq!((error.one.as_str(), error.other.as_str(), error.trace), ("cpu (windows)", "gpu (windows)", 4));
+        assert_eq!((error.one.as_str(), error.other.as_str(), error.trace), ("cpu (windows)", "gpu (resident)", 4));
         assert_eq!(error.what, format!("{count} and {} events", count - 1));
         let mut wrong = right.clone();
         wrong[1].events.swap(0, 1);
@@ -148,6 +148,6 @@ mod tests {
         assert_eq!(agreement.check(NOTE, &wrong), Ok(Some(1)));
         let error = agreement.check(GPU, &wrong).unwrap_err();
         assert_eq!(error.what, format!("its {depth} turns at the end are different ones"));
-        assert!(error.to_string().starts_with("funnel (every step) and gpu (windows) disagree on trace 3: its "));
+        assert!(error.to_string().starts_with("funnel (every step) and gpu (resident) disagree on trace 3: its "));
     }
 }

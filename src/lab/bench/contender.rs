@@ -41,8 +41,11 @@ const fn usual(engine: &'static EngineKind, variant: &'static str) -> Contender 
     Contender { engine, variant, shape: Shape::Usual(Precision::Certified) }
 }
 
-/// The product: a candidate pass on the GPU over windows of steps.
-pub(in crate::lab) const GPU: Contender = usual(&engine::GPU, "windows");
+/// The product: traces are taken along on the GPU.
+pub(in crate::lab) const GPU: Contender = usual(&engine::GPU, "resident");
+
+/// A candidate pass on the GPU over windows of steps.
+pub(in crate::lab) const GPU_WINDOWS: Contender = usual(&engine::GPU_WINDOWS, "windows");
 
 /// The same on threads.
 pub(in crate::lab) const CPU: Contender = usual(&engine::CPU, "windows");
@@ -72,7 +75,7 @@ pub(in crate::lab) const NOTE_FURTHEST: Contender =
 pub(in crate::lab) const REFERENCE: Contender = usual(&engine::REFERENCE, "one by one");
 
 /// All contenders of a bench, in the order of the report. The baseline is one of them.
-pub const CONTENDERS: [Contender; 8] = [GPU, CPU, GPU_RAYS, FAST, FUNNEL, FUNNEL_FINAL, NOTE, REFERENCE];
+pub const CONTENDERS: [Contender; 9] = [GPU, CPU, GPU_WINDOWS, GPU_RAYS, FAST, FUNNEL, FUNNEL_FINAL, NOTE, REFERENCE];
 
 impl Contender {
     /// What all others are compared with.
@@ -93,7 +96,7 @@ impl Contender {
 
     /// Whether the widest window changes what it does.
     pub fn is_windowed(&self) -> bool {
-        self.engine.asks
+        self.engine.asks && !(self.engine == GPU.engine && self.decides() == Precision::Certified)
     }
 
     /// The most legs that one of its queries covers if the setting allows `legs`; `None` if that changes nothing.

@@ -24,8 +24,9 @@ fn all_engines_stand_side_by_side() {
     let rows = results(&Folder::new(), SMALL);
     let names: Vec<_> = rows.iter().map(|r| (r["engine"].as_str().unwrap(), r["variant"].as_str().unwrap())).collect();
     let expected = [
-        ("gpu", "windows"),
+        ("gpu", "resident"),
         ("cpu", "windows"),
+        ("gpu-windows", "windows"),
         ("gpu-rays", "all vertices"),
         ("gpu", "fast, windows"),
         ("funnel", "every step"),
@@ -41,7 +42,7 @@ fn all_engines_stand_side_by_side() {
         assert_eq!(row["batch"], 6, "{row}");
         match (row["engine"].as_str(), row["variant"].as_str()) {
             (Some("gpu-rays"), _) => assert_eq!(row["remaining"], 80, "{row}"),
-            (Some("gpu" | "cpu"), _) => assert!((1..=80).contains(&row["remaining"].as_u64().unwrap()), "{row}"),
+            (Some("gpu" | "gpu-windows" | "cpu"), _) => assert!((1..=80).contains(&row["remaining"].as_u64().unwrap()), "{row}"),
             _ => assert!(row["remaining"].is_null(), "{row}"),
         }
         let [traces, steps, threads] = ["traces", "steps", "threads"].map(|key| row[key].as_u64().unwrap());
@@ -88,7 +89,7 @@ fn what_is_counted_is_what_engines_do() {
     }
     // The same traces give the same events.
     let exact: Vec<_> = rows.iter().filter(|r| r["precision"] == "certified" && r["engine"] != "funnel").collect();
-    assert_eq!(exact.len(), 4);
+    assert_eq!(exact.len(), 5);
     for [one, other] in exact
         .windows(2)
         .map(|pair| [pair[0], pair[1]])

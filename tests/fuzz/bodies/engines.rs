@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 
 use tautline::candidates::{LISTS_BUDGET, Lists};
 use tautline::engine::{
-    Cpu, ENGINES, Engine, EngineError, EngineKind, Gpu, Job, Options, Precision, Promise, Reference,
+    Cpu, ENGINES, Engine, EngineError, EngineKind, GpuWindows, Job, Options, Precision, Promise, Reference,
 };
 use tautline::gpu::{AdapterChoice, Device, SWEEP_WGSL};
 use tautline::rope::{Side, TraceRecord, replay};
@@ -53,7 +53,7 @@ pub(super) fn gpu(input: &[u8]) {
     let Some((model, traces)) = recipe(input) else { return };
     let truth = run(&mut Reference::new(model.clone()), &traces);
     let lists = Lists::new(model.clone()).after(0);
-    let gpu = Gpu::with(DEVICE.clone(), lists, LISTS_BUDGET, DEVICE.tuning(), SWEEP_WGSL);
+    let gpu = GpuWindows::with(DEVICE.clone(), lists, LISTS_BUDGET, DEVICE.tuning(), SWEEP_WGSL);
     let mut gpu = gpu.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(run(&mut gpu, &traces), truth);
     assert_eq!(run(&mut gpu.window(2), &traces), truth);

@@ -1,24 +1,35 @@
-//! The engine of the product: the candidate pass in a compute shader, pushes and pops on the CPU.
+//! The candidate pass in a compute shader, window by window; pushes and pops on the CPU.
 
 use std::sync::Arc;
 
-use super::rounds::{self, NAME};
+use super::rounds;
 use crate::candidates::{LISTS_BUDGET, Lists};
+use crate::engine::table::Open;
 use crate::engine::windows::Windows;
-use crate::engine::{Engine, EngineError, Job, WINDOW};
+use crate::engine::{Engine, EngineError, EngineKind, Job, Precision, Promise, WINDOW};
 use crate::gpu::{AdapterSummary, Device, GpuError, GpuPass, HALVES, SWEEP_WGSL, Tuning};
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::{SettledTrace, bounds};
 
-/// Evaluates traces on a GPU, for one model.
-pub struct Gpu {
+/// The candidate pass in a compute shader, window by window.
+pub static GPU_WINDOWS: EngineKind = EngineKind {
+    name: "gpu-windows",
+    about: "A compute shader finds candidates, window by window, the CPU decides all events",
+    precisions: &[Precision::Certified],
+    asks: true,
+    promise: Promise::Events,
+    open: Open::Device(|device, model, options| Ok(Box::new(GpuWindows::new(device, model)?.window(options.window)))),
+};
+
+/// Evaluates traces on a GPU that finds candidates, for one model.
+pub struct GpuWindows {
     lists: Lists,
     pass: GpuPass,
     window: usize,
 }
 
-impl Gpu {
+impl GpuWindows {
     /// An engine for `model` on an opened adapter.
     ///
     /// # Errors
@@ -39,7 +50,7 @@ impl Gpu {
         device.certify()?;
         let n = lists.model().vertices().len();
         let pass = GpuPass::new(device, lists.keys(), n, budget, tuning, wgsl)?;
-        Ok(Gpu { lists, pass, window: WINDOW })
+        Ok(GpuWindows { lists, pass, window: WINDOW })
     }
 
     /// The same engine with windows of at most `legs` legs, at least 1.
@@ -65,9 +76,9 @@ impl Gpu {
     }
 }
 
-impl Engine for Gpu {
+impl Engine for GpuWindows {
     fn name(&self) -> &'static str {
-        NAME
+        GPU_WINDOWS.name
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {

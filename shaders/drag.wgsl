@@ -1,0 +1,296 @@
+// Dragging the free end: each lane takes one trace along, through as many legs and events as it can be certain of.
+//
+// The rope's last leg turns about its pivot, whose fan has the rays of all vertices that it can meet, counter-clockwise
+// (`src/candidates/fan.rs`). Between two neighbouring rays nothing happens. A leg that leaves these two meets one ray
+// after the other: it passes before the ray's vertex, or beyond it, and then the rope is wrapped there; and if it meets
+// the line along which the rope came to its pivot, it unwraps.
+//
+// Points are whole numbers, so their differences are exact; `turn_of` bounds what f32 makes of their products. A sign
+// within its bound is not certain. There the lane stops, and the CPU decides the leg exactly. So what a lane decides is
+// what the exact update decides, on any device whose products and sums are one of the two nearest f32.
+//
+// The twin on the CPU, in f64, is `src/engine/turning.rs`.
+
+// How many contacts a lane knows at most, the last ones.
+const STACK: u32 = 32u;
+// How many events a lane notes in a dispatch at most.
+const LOG: u32 = 32u;
+
+// What a lane does.
+const RUNS: u32 = 0u;
+const DONE: u32 = 1u;
+const STOPPED: u32 = 2u;
+
+// The event of an unwrap; of a wrap it is the vertex.
+const UNWRAP: u32 = 0xffffffffu;
+
+// By what share of its two products a turn can be off: 2^-20. Rounded factors are good to 2^-24 and 2^-23, each
+// product and their difference to 2^-23: 3.5 x 2^-23 in all, and the bound itself is rounded.
+const SHARE: f32 = 0.00000095367431640625;
+// By how much a difference of two points can be off in each coordinate, which are rounded to whole numbers: 1, and a
+// quarter for what f64 rounds and for the rounding of the bound.
+const OFF: f32 = 1.25;
+// Ways longer than this belong to no vertex: 2^36, beyond all points.
+const ENDLESS: f32 = 68719476736.0;
+
+struct Job {
+    // How many lanes there are in this dispatch.
+    lanes: u32,
+    // How often events are seen to at most, and how many looks a lane takes between: lanes that have met an event wait
+    // for the others.
+    turns: u32,
+    looks: u32,
+    // The pivot that is the anchor.
+    anchor: u32,
+}
+
+// What is known of a lane between dispatches; it then stands at a point.
+struct Lane {
+    // Where the point at which it stands lies, and the last one to which it goes.
+    point: u32,
+    last: u32,
+    // What its rope turns about, and the last ray of its fan clockwise of where it points.
+    pivot: u32,
+    low: u32,
+    // How many of its contacts are in its stack, and how many more it has.
+    depth: u32,
+    deeper: u32,
+    does: u32,
+    events: u32,
+    // The way to the pivot from the contact before, and which way the rope turns when it leaves the pivot: 0 for the anchor.
+    way: vec2<f32>,
+    back: f32,
+    // The square of the greatest distance from the pivot since the last event.
+    farthest: f32,
+    // Whose stack is its.
+    number: u32,
+    unused_x: u32,
+    unused_y: u32,
+    unused_z: u32,
+}
+
+@group(0) @binding(0) var<uniform> job: Job;
+// Fans and points. Of a fan, the ways to its vertices as f32; of a point, its place in whole numbers.
+@group(0) @binding(1) var<storage, read> data: array<vec2<u32>>;
+// The vertex of each ray in `data`.
+@group(0) @binding(2) var<storage, read> vertices: array<u32>;
+// Of each pivot: where its fan begins, how many rays it has, 0 if it is not there; and its place.
+@group(0) @binding(3) var<storage, read> pivots: array<vec4<u32>>;
+@group(0) @binding(4) var<storage, read_write> lanes: array<Lane>;
+// A trace's contacts: the vertex and the side, the ray of the prior's fan on which it lies, the way there.
+@group(0) @binding(5) var<storage, read_write> stacks: array<vec4<u32>>;
+// A lane's events: the point from which the leg goes, the vertex or UNWRAP, the square of the greatest distance from the
+// pivot before, whether the rope turned clockwise.
+@group(0) @binding(6) var<storage, read_write> notes: array<vec4<u32>>;
+
+override WORKGROUP: u32 = 64u;
+
+fn sum_of(v: vec2<f32>) -> f32 {
+    return abs(v.x) + abs(v.y);
+}
+
+// The turn from `u` to `v` if it is certain, else 0: each coordinate of `u` is off by a share of 2^-24, of `v` by that
+// and by OFF, and the whole by `more` besides.
+fn turn_of(u: vec2<f32>, v: vec2<f32>, more: f32) -> f32 {
+    let left = u.x * v.y;
+    let right = u.y * v.x;
+    let turn = left - right;
+    let bound = (abs(left) + abs(right)) * SHARE + more;
+    return select(0.0, turn, abs(turn) > bound);
+}
+
+fn ray_at(place: u32) -> vec2<f32> {
+    return bitcast<vec2<f32>>(data[place]);
+}
+
+fn point_at(place: u32) -> vec2<i32> {
+    return bitcast<vec2<i32>>(data[place]);
+}
+
+@compute @workgroup_size(WORKGROUP)
+fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= job.lanes {
+        return;
+    }
+    let began = lanes[id.x];
+    let number = began.number;
+    var point = began.point;
+    let last = began.last;
+    var pivot = began.pivot;
+    var depth = began.depth;
+    let deeper = began.deeper;
+    var does = began.does;
+    var events = began.events;
+    var way = began.way;
+    var back = began.back;
+    var farthest = began.farthest;
+    var fan = pivots[pivot].x;
+    var rays = pivots[pivot].y;
+    var origin = bitcast<vec2<i32>>(pivots[pivot].zw);
+    var low_number = began.low;
+    var high_number = select(low_number + 1u, 0u, low_number + 1u >= rays);
+    var low = ray_at(fan + low_number);
+    var high = ray_at(fan + high_number);
+    var b = point_at(min(point + 1u, last));
+    var wa = vec2<f32>(point_at(point) - origin);
+    var wb = vec2<f32>(b - origin);
+    // Which way the rope has turned on this leg, and along what it then pointed, once it has met a ray.
+    var dir = 0.0;
+    var start = vec2<f32>(0.0, 0.0);
+    var unwrapped = false;
+
+    for (var turn_taken = 0u; turn_taken < job.turns; turn_taken++) {
+        if does != RUNS || (events + 8u > LOG && dir == 0.0) {
+            break;
+        }
+        var event = 0u;
+        for (var look = 0u; look < job.looks; look++) {
+            if event != 0u || does != RUNS {
+                break;
+            }
+            let turn_low = turn_of(low, wb, OFF * sum_of(low));
+            let turn_high = turn_of(high, wb, OFF * sum_of(high));
+            let turn_way = turn_of(way, wb, OFF * sum_of(way)) * back;
+            let inside = dir == 0.0 && turn_low > 0.0 && turn_high < 0.0 && (back == 0.0 || turn_way < 0.0);
+            let sums = OFF * (sum_of(wa) + sum_of(wb)) + 4.0;
+            let turn = turn_of(wa, wb, sums);
+            let to = select(dir, sign(turn), dir == 0.0);
+            let ray = select(low, high, to > 0.0);
+            let past_ray = select(-turn_low, turn_high, to > 0.0);
+            let past_way = select(-1.0, turn_way, back == to);
+            let order = turn_of(way, ray, 0.0) * to;
+            let both = past_ray > 0.0 && past_way > 0.0;
+            let certain = to != 0.0 && past_ray != 0.0 && past_way != 0.0 && !(both && order == 0.0);
+            let goes_on = inside || (certain && past_ray < 0.0 && past_way < 0.0);
+            let ray_first = past_ray > 0.0 && (past_way < 0.0 || order < 0.0);
+            // On which side of the leg the ray's vertex lies: the sum of three turns about the pivot.
+            let a_b = wa.x * wb.y - wa.y * wb.x;
+            let b_ray = wb.x * ray.y - wb.y * ray.x;
+            let ray_a = ray.x * wa.y - ray.y * wa.x;
+            let beyond = (a_b + b_ray + ray_a) * to;
+            let products = sum_of(wa) * sum_of(wb) + sum_of(ray) * (sum_of(wa) + sum_of(wb));
+            let bound = products * (2.0 * SHARE) + 2.0 * OFF * sum_of(ray) + 2.0 * sums;
+            let passes = sum_of(ray) > ENDLESS || beyond < -bound;
+            let wraps = !passes && beyond > bound;
+            if goes_on {
+                farthest = max(farthest, wb.x * wb.x + wb.y * wb.y);
+                point++;
+                wa = wb;
+                dir = 0.0;
+                unwrapped = false;
+            } else if !certain || (ray_first && !passes && !wraps) {
+                does = STOPPED;
+            } else if ray_first && passes {
+                dir = to;
+            } else {
+                dir = to;
+                event = select(2u, 1u, ray_first);
+            }
+            let passed = !goes_on && does == RUNS && event == 0u;
+            // What comes next: the next point, or the next ray.
+            var place = min(point + 1u, last);
+            if passed {
+                if to > 0.0 {
+                    low_number = high_number;
+                    high_number = select(high_number + 1u, 0u, high_number + 1u >= rays);
+                    low = high;
+                } else {
+                    high_number = low_number;
+                    low_number = select(low_number, rays, low_number == 0u) - 1u;
+                    high = low;
+                }
+                place = fan + select(low_number, high_number, to > 0.0);
+            }
+            let next = data[place];
+            if passed {
+                low = select(low, bitcast<vec2<f32>>(next), to < 0.0);
+                high = select(high, bitcast<vec2<f32>>(next), to > 0.0);
+            } else if goes_on {
+                b = bitcast<vec2<i32>>(next);
+                wb = vec2<f32>(b - origin);
+                does = select(RUNS, DONE, point >= last);
+            }
+        }
+        if event != 0u && does == RUNS {
+            let is_wrap = event == 1u;
+            let top = number * STACK + depth;
+            var met = select(low_number, high_number, dir > 0.0);
+            var vertex = vertices[fan + met];
+            var next_way = select(low, high, dir > 0.0);
+            var next_back = -dir;
+            var next = vertex;
+            // The last leg doubles back along the rope itself: then it unwraps only half a turn further.
+            let doubles_back = unwrapped && turn_of(way, start, 0.0) * back >= 0.0;
+            let room = events < LOG && select(!doubles_back && (depth > 1u || deeper == 0u), depth < STACK, is_wrap);
+            if room && !is_wrap {
+                let left = stacks[top - 1u];
+                met = left.y;
+                start = way;
+                vertex = UNWRAP;
+                next = job.anchor;
+                next_back = 0.0;
+                if depth > 1u {
+                    let under = stacks[top - 2u];
+                    next = under.x & 0x7fffffffu;
+                    next_way = bitcast<vec2<f32>>(under.zw);
+                    next_back = select(-1.0, 1.0, (under.x >> 31u) == 1u);
+                }
+            }
+            let head = pivots[next];
+            var found = met;
+            if is_wrap {
+                start = next_way;
+                // Between which rays of the next fan this ray goes on: half the plane first, then the turn.
+                let below = start.y < 0.0 || (start.y == 0.0 && start.x < 0.0);
+                var least = 0u;
+                var most = head.y;
+                while least < most {
+                    let middle = (least + most) / 2u;
+                    let ray = ray_at(head.x + middle);
+                    let is_below = ray.y < 0.0 || (ray.y == 0.0 && ray.x < 0.0);
+                    let before = select(!is_below, ray.x * start.y - ray.y * start.x > 0.0, is_below == below);
+                    least = select(least, middle + 1u, before);
+                    most = select(middle, most, before);
+                }
+                found = select(least, head.y, least == 0u) - 1u;
+            } else if dir < 0.0 {
+                found = select(met, head.y, met == 0u) - 1u;
+            }
+            let found_next = select(found + 1u, 0u, found + 1u >= head.y);
+            let next_low = ray_at(head.x + found);
+            let next_high = ray_at(head.x + found_next);
+            let between = turn_of(next_low, start, 0.0) > 0.0 && turn_of(next_high, start, 0.0) < 0.0;
+            if !room || head.y == 0u || (is_wrap && !between) {
+                does = STOPPED;
+            } else {
+                notes[id.x * LOG + events] = vec4<u32>(point, vertex, bitcast<u32>(farthest), select(0u, 1u, dir < 0.0));
+                events++;
+                farthest = 0.0;
+                if is_wrap {
+                    let side = select(0u, 0x80000000u, dir < 0.0);
+                    stacks[top] = vec4<u32>(vertex | side, met, bitcast<u32>(next_way.x), bitcast<u32>(next_way.y));
+                }
+                depth = select(depth - 1u, depth + 1u, is_wrap);
+                unwrapped = !is_wrap;
+                pivot = next;
+                fan = head.x;
+                rays = head.y;
+                let moved = bitcast<vec2<i32>>(head.zw);
+                wa = vec2<f32>(point_at(point) - moved);
+                wb = vec2<f32>(b - moved);
+                origin = moved;
+                low_number = found;
+                high_number = found_next;
+                low = next_low;
+                high = next_high;
+                way = next_way;
+                back = next_back;
+            }
+        }
+    }
+    // A leg that was met halfway is the CPU's.
+    if does == RUNS && dir != 0.0 {
+        does = STOPPED;
+    }
+    lanes[id.x] = Lane(point, last, pivot, low_number, depth, deeper, does, events, way, back, farthest, number, 0u, 0u, 0u);
+}

@@ -1,0 +1,241 @@
+//! A trace that is taken along on the device: what comes back of it is written down, and what the device was not certain
+//! of is decided here.
+
+use std::sync::atomic::Ordering;
+
+use glam::DVec2;
+
+use super::resident::Shared;
+use crate::engine::WINDOW;
+use crate::engine::hand::Hand;
+use crate::engine::windows::Windows;
+use crate::gpu::{CHUNK, DragPass, Lane, Note, RIGHT, STOPPED, Stacked, UNWRAPPED};
+use crate::rope::{Contact, Side, TraceRecord};
+use crate::scene::Pivot;
+use crate::trace::SettledTrace;
+
+/// How many legs the CPU takes at most where the device was not certain, before that is asked again.
+const LEGS_OF_DOUBT: usize = 4;
+
+/// How many contacts a trace brings to the device that goes on there. A rope that unwraps more of them stops once.
+const CONTACTS: usize = 8;
+
+/// A place in a half, and the trace in it.
+pub(super) struct Slot<'a> {
+    windows: Windows,
+    trace: Option<(usize, &'a SettledTrace)>,
+    /// Where its piece begins in the half's points, and from which to which of the trace's points it goes.
+    first: usize,
+    from: usize,
+    last: usize,
+    /// How the device is to know it.
+    lane: Lane,
+    /// Its last contacts, if the device does not have them.
+    stack: Vec<Stacked>,
+}
+
+/// The device told of a trace what cannot be.
+struct Astray;
+
+impl<'a> Slot<'a> {
+    pub(super) fn new() -> Self {
+        let (lane, stack) = (Lane::default(), Vec::new());
+        Slot { windows: Windows::new(), trace: None, first: 0, from: 0, last: 0, lane, stack }
+    }
+
+    fn at(&self) -> usize {
+        self.windows.at()
+    }
+
+    /// Whether the trace has not come to the end of its piece.
+    pub(super) fn is_on_its_way(&self) -> bool {
+        self.trace.is_some() && self.at() < self.last
+    }
+
+    /// Goes on to the next trace where one is done, and returns the record of that with its number.
+    pub(super) fn next_trace(&mut self, shared: &Shared<'a>) -> Option<(usize, TraceRecord)> {
+        let done = self.trace.and_then(|(number, trace)| Some((number, self.windows.finished(trace)?)));
+        if done.is_some() || self.trace.is_none() {
+            self.trace = shared.next();
+            if let Some((_, trace)) = self.trace {
+                self.windows.start(shared.lists.model(), trace);
+            }
+        }
+        done
+    }
+
+    /// Gives it a piece of its trace of at most `most` legs, at place `first` of the half's points, and returns how many
+    /// chunks these take; nothing if it has no trace.
+    pub(super) fn take_piece(&mut self, first: usize, most: usize) -> Option<usize> {
+        let (_, trace) = self.trace?;
+        let from = self.at();
+        (self.first, self.from, self.last) = (first, from, (from + most).min(trace.points().len() - 1));
+        Some(self.chunks())
+    }
+
+    /// Takes its piece back, for which there is no room.
+    pub(super) fn put_back(&mut self) {
+        self.last = self.at();
+    }
+
+    /// How many chunks its piece takes.
+    pub(super) fn chunks(&self) -> usize {
+        (self.last - self.from + 1).div_ceil(CHUNK)
+    }
+
+    /// The points of its piece.
+    pub(super) fn points(&self) -> &'a [DVec2] {
+        self.trace.map_or(&[], |(_, trace)| &trace.points()[self.from..=self.last])
+    }
+
+    /// Its lane, with the stack of this `number`, where the half's points begin at `first`.
+    pub(super) fn lane(&self, first: u32, number: usize) -> Lane {
+        let at = |point: usize| first + (self.first + point - self.from) as u32;
+        Lane { point: at(self.at()), last: at(self.last), number: number as u32, ..self.lane }
+    }
+
+    /// Its last contacts, if the device does not have them.
+    pub(super) fn take_stack(&mut self) -> Vec<Stacked> {
+        std::mem::take(&mut self.stack)
+    }
+
+    /// What its rope turns about.
+    pub(super) fn pivot(&self) -> usize {
+        self.lane.pivot as usize
+    }
+
+    /// Brings the fan of its pivot if that is not there; false if there is no room for it.
+    pub(super) fn bring_fan(&self, pass: &mut DragPass, shared: &Shared<'_>) -> bool {
+        if pass.has_fan(self.pivot()) {
+            return true;
+        }
+        let (model, rope) = (shared.lists.model(), &self.windows.progress.rope);
+        let pivot = model.pivot(rope.contacts().last().map(|c| c.vertex));
+        let Some(list) = shared.lists.of(pivot, f64::INFINITY) else { return true };
+        let Some(fan) = list.fan(model, rope.pivot()) else { return true };
+        pass.bring_fan(pivot.index(), &shared.grid.fan(fan), (0..fan.len()).map(|i| fan.vertex(i)))
+    }
+
+    /// Takes the trace as far as the device took it, and a bit further where that was not certain of what comes next.
+    pub(super) fn collect(
+        &mut self,
+        hand: &mut Hand<'_>,
+        shared: &Shared<'_>,
+        first: u32,
+        lane: &Lane,
+        notes: &[Note],
+    ) {
+        let Some((_, trace)) = self.trace else { return };
+        let before = trace.step(self.at());
+        if self.write_down(shared, trace, first, lane, notes).is_err() {
+            shared.astray.store(true, Ordering::Relaxed);
+            return;
+        }
+        shared.job.count(trace.step(self.at()) - before);
+        if lane.does == STOPPED {
+            self.go_on(hand, shared, LEGS_OF_DOUBT);
+            self.position(hand, shared);
+        } else {
+            self.lane = Lane { events: 0, farthest: 0.0, ..*lane };
+        }
+    }
+
+    /// Writes down what the device noted.
+    fn write_down(
+        &mut self,
+        shared: &Shared<'_>,
+        trace: &SettledTrace,
+        first: u32,
+        lane: &Lane,
+        notes: &[Note],
+    ) -> Result<(), Astray> {
+        let model = shared.lists.model();
+        let (begins, from, last) = (first as usize + self.first, self.from, self.last);
+        let at = |point: u32| {
+            let at = (point as usize).checked_sub(begins).ok_or(Astray)? + from;
+            if at <= last { Ok(at) } else { Err(Astray) }
+        };
+        let progress = &mut self.windows.progress;
+        for note in notes.get(..lane.events as usize).ok_or(Astray)? {
+            progress.go_to(trace, at(note.point)?, shared.grid.at_most(note.farthest)).ok_or(Astray)?;
+            let dir = if note.clockwise == 0 { 1.0 } else { -1.0 };
+            if note.vertex == UNWRAPPED {
+                progress.unwrap(trace, dir).ok_or(Astray)?;
+            } else {
+                let to = *model.vertices().get(note.vertex as usize).ok_or(Astray)?;
+                progress.wrap(trace, note.vertex, to, dir).ok_or(Astray)?;
+            }
+        }
+        progress.go_to(trace, at(lane.point)?, shared.grid.at_most(lane.farthest)).ok_or(Astray)?;
+        let contacts = progress.rope.contacts();
+        let pivot = model.pivot(contacts.last().map(|c| c.vertex));
+        let knows = lane.depth as usize + lane.deeper as usize;
+        if lane.pivot as usize == pivot.index() && knows == contacts.len() { Ok(()) } else { Err(Astray) }
+    }
+
+    /// Takes the trace on on the CPU until it stands where the device can go on, or is at the end of its piece.
+    pub(super) fn position(&mut self, hand: &mut Hand<'_>, shared: &Shared<'_>) {
+        while self.is_on_its_way() && shared.job.go_on().is_ok() {
+            match self.place(hand, shared) {
+                Ok(()) => return,
+                Err(legs) => self.go_on(hand, shared, legs),
+            }
+        }
+    }
+
+    /// Takes the trace to the end of its piece on the CPU.
+    pub(super) fn finish_piece(&mut self, hand: &mut Hand<'_>, shared: &Shared<'_>) {
+        while self.is_on_its_way() && shared.job.go_on().is_ok() {
+            self.go_on(hand, shared, WINDOW);
+        }
+    }
+
+    /// Takes the trace on on the CPU by at most `most` legs, or to the next event.
+    fn go_on(&mut self, hand: &mut Hand<'_>, shared: &Shared<'_>, most: usize) {
+        if let Some((_, trace)) = self.trace.filter(|_| self.is_on_its_way()) {
+            let before = self.at();
+            hand.go_on(&mut self.windows, trace, most.min(self.last - before), shared.job);
+            let steps = trace.step(self.at()) - trace.step(before);
+            shared.job.count(steps);
+            shared.job.count_doubts(steps);
+        }
+    }
+
+    /// Finds where the device can go on; if it cannot, how many legs the CPU should take at most.
+    fn place(&mut self, hand: &mut Hand<'_>, shared: &Shared<'_>) -> Result<(), usize> {
+        let (model, grid, job) = (shared.lists.model(), shared.grid, shared.job);
+        let progress = &self.windows.progress;
+        let (rope, contacts) = (&progress.rope, progress.rope.contacts());
+        let Some((_, trace)) = self.trace.filter(|_| progress.start_direction().is_none()) else {
+            return Err(LEGS_OF_DOUBT);
+        };
+        let pivot = model.pivot(contacts.last().map(|c| c.vertex));
+        let list = hand.list(pivot, f64::INFINITY, job).ok_or(WINDOW)?;
+        let fan = list.fan(model, rope.pivot()).filter(|fan| grid.tells(fan)).ok_or(WINDOW)?;
+        let low = fan.locate(trace.points()[progress.at] - rope.pivot()).ok_or(LEGS_OF_DOUBT)?;
+        self.stack.clear();
+        for (i, contact) in contacts.iter().enumerate().rev().take(CONTACTS) {
+            let (prior, from) = match i.checked_sub(1) {
+                Some(i) => (Pivot::at_vertex(contacts[i].vertex), contacts[i].at),
+                None => (model.pivot(None), model.anchor()),
+            };
+            let way = contact.at - from;
+            let list = hand.list(prior, f64::INFINITY, job);
+            let Some(ray) = list.and_then(|list| list.fan(model, from)?.ray_along(way)) else { break };
+            let side = if contact.side == Side::Right { RIGHT } else { 0 };
+            self.stack.push(Stacked { vertex: contact.vertex | side, ray: ray as u32, way: grid.way(way) });
+        }
+        self.stack.reverse();
+        let back = |c: &Contact| if c.side == Side::Right { 1.0 } else { -1.0 };
+        self.lane = Lane {
+            pivot: pivot.index() as u32,
+            low: low as u32,
+            depth: self.stack.len() as u32,
+            deeper: (contacts.len() - self.stack.len()) as u32,
+            way: grid.way(rope.pivot() - rope.prior()),
+            back: contacts.last().map_or(0.0, back),
+            ..Lane::default()
+        };
+        Ok(())
+    }
+}

@@ -1,0 +1,334 @@
+//! The engine of the product: a compute shader takes traces along through many legs and events, the CPU keeps the books
+//! and decides what the shader is not certain of.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::dragged::Slot;
+use crate::candidates::{Grid, Lists, Simd};
+use crate::engine::hand::Hand;
+use crate::engine::windows::Windows;
+use crate::engine::{Engine, EngineError, Job, Phase, WINDOW};
+use crate::gpu::{AdapterSummary, CHUNK, DRAG_WGSL, Device, DragPass, GpuError, HALVES, Lane, NOTES, Room, Tuning};
+use crate::rope::TraceRecord;
+use crate::scene::Model;
+use crate::trace::{SettledTrace, bounds};
+
+/// How many bytes of points and fans lie on the device at most unless told otherwise.
+const BUDGET: usize = 256 << 20;
+
+/// How many rays a pivot's fan is expected to have.
+const RAYS: usize = 256;
+
+/// How many legs of a trace are brought at a time at most.
+const PIECE: usize = 1 << 12;
+
+/// After how many looks of a lane events are seen to: lanes that have met one wait for the others.
+const LOOKS: u32 = 32;
+
+/// The traces of a half go on on the CPU when no more than one in so many is still on its way, or [`FEW`].
+const STRAGGLERS: usize = 512;
+
+/// How many traces are not worth a round.
+const FEW: usize = 4;
+
+/// Evaluates traces on a GPU, for one model.
+pub struct Gpu {
+    lists: Lists,
+    grid: Grid,
+    device: Device,
+    budget: usize,
+    tuning: Tuning,
+    wgsl: String,
+    /// Made for the first traces, and again for more.
+    pass: Option<DragPass>,
+}
+
+impl Gpu {
+    /// An engine for `model` on an opened adapter.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of, or what of its f32 exact ropes cannot rely on.
+    pub fn new(device: Device, model: Arc<Model>) -> Result<Self, GpuError> {
+        let tuning = device.tuning();
+        Self::with(device, Lists::new(model).after(0), BUDGET, tuning, DRAG_WGSL)
+    }
+
+    /// An engine with the fans of `lists`, that keeps up to about `budget` bytes of points and fans on the device.
+    /// `tuning` takes the place of what suits the adapter, its queries being traces; `wgsl` that of `drag.wgsl`.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn with(device: Device, lists: Lists, budget: usize, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
+        device.certify()?;
+        let grid = Grid::new(*lists.frame());
+        Ok(Gpu { lists, grid, device, budget, tuning, wgsl: wgsl.to_owned(), pass: None })
+    }
+
+    /// The adapter on which it runs.
+    pub fn adapter(&self) -> &AdapterSummary {
+        self.device.summary()
+    }
+
+    /// Makes sure that there is a pass with room enough for so many traces, of so many points in all.
+    fn make_room(&mut self, traces: usize, points: usize) -> Result<(), GpuError> {
+        let most = DragPass::most(&self.device, self.budget, self.tuning.queries);
+        let model = self.lists.model();
+        let room = Room {
+            lanes: traces.div_ceil(HALVES).next_power_of_two().min(most.lanes.max(1)),
+            points: points.div_ceil(HALVES).next_power_of_two().max(CHUNK).min(most.points),
+            rays: (RAYS * (model.vertices().len() + 1)).next_power_of_two().min(most.rays),
+        };
+        let suffices = |has: Room| has.lanes >= room.lanes && has.points >= room.points;
+        if self.pass.as_ref().is_none_or(|pass| !suffices(pass.room())) {
+            let places: Vec<[i32; 2]> = model.pivots().map(|pivot| self.grid.place(model.position(pivot))).collect();
+            self.pass = None;
+            let pass = DragPass::new(self.device.clone(), &places, room, self.tuning.workgroup, &self.wgsl)?;
+            self.pass = Some(pass);
+        }
+        Ok(())
+    }
+}
+
+impl Engine for Gpu {
+    fn name(&self) -> &'static str {
+        super::GPU.name
+    }
+
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
+        if bounds(traces).is_some_and(|bounds| self.lists.cover(bounds))
+            && let Some(pass) = &mut self.pass
+        {
+            pass.forget();
+        }
+        let mut records: Vec<Option<TraceRecord>> = traces.iter().map(|_| None).collect();
+        // Traces that touch walls are hardly ever certain, and those that cross them can meet anything.
+        let suits = |trace: &SettledTrace| {
+            trace.is_plain() && !trace.breaks_rules() && self.grid.holds(trace.bounds()) && trace.points().len() > 1
+        };
+        let (easy, hard): (Vec<usize>, Vec<usize>) = (0..traces.len()).partition(|&i| suits(&traces[i]));
+        let points = easy.iter().map(|&i| traces[i].points().len().min(PIECE + 1).next_multiple_of(CHUNK)).sum();
+        if !easy.is_empty() {
+            self.make_room(easy.len(), points)?;
+        }
+        let Gpu { lists, grid, pass, .. } = self;
+        let simd = Simd::detected();
+        let hand = || (Hand::new(lists, WINDOW, simd), Windows::new());
+        let one = |(hand, windows): &mut (Hand<'_>, Windows), i: usize| {
+            Ok::<_, EngineError>((i, hand.evaluate(windows, &traces[i], job)?))
+        };
+        let done: Result<Vec<_>, EngineError> = hard.into_par_iter().map_init(hand, one).collect();
+        done?.into_iter().for_each(|(i, record)| records[i] = Some(record));
+        if let Some(pass) = pass.as_mut().filter(|_| !easy.is_empty()) {
+            let shared = Shared {
+                lists,
+                grid,
+                simd,
+                job,
+                traces,
+                easy: &easy,
+                begun: AtomicUsize::new(0),
+                astray: AtomicBool::new(false),
+            };
+            let lanes = pass.room().lanes.min(easy.len().div_ceil(HALVES));
+            let mut halves: [Half<'_>; HALVES] = std::array::from_fn(|_| Half::new(lanes));
+            let played = play(pass, &shared, &mut halves, &mut records);
+            // Rounds that are still on their way after an early end: so that the next evaluation finds the device free.
+            for half in 0..HALVES {
+                let _ = pass.collect(half, |_, _| ());
+            }
+            played?;
+        }
+        Ok(records.into_iter().map(|r| r.expect("every trace was evaluated")).collect())
+    }
+
+    fn batch(&self) -> usize {
+        HALVES * self.tuning.queries
+    }
+
+    fn remaining(&self) -> Option<usize> {
+        self.lists.remaining_count()
+    }
+
+    fn forget(&mut self) {
+        self.lists.forget();
+        self.pass.iter_mut().for_each(DragPass::forget);
+    }
+}
+
+/// What all slots share.
+pub(super) struct Shared<'a> {
+    pub lists: &'a Lists,
+    pub grid: &'a Grid,
+    pub simd: Simd,
+    pub job: &'a Job,
+    pub traces: &'a [SettledTrace],
+    /// The traces that go to the device.
+    easy: &'a [usize],
+    begun: AtomicUsize,
+    /// Whether the device told what cannot be.
+    pub astray: AtomicBool,
+}
+
+impl<'a> Shared<'a> {
+    pub(super) fn hand(&self) -> Hand<'a> {
+        Hand::new(self.lists, WINDOW, self.simd)
+    }
+
+    /// The next trace that nobody has begun.
+    pub(super) fn next(&self) -> Option<(usize, &'a SettledTrace)> {
+        let number = *self.easy.get(self.begun.fetch_add(1, Ordering::Relaxed))?;
+        Some((number, &self.traces[number]))
+    }
+}
+
+fn play<'a>(
+    pass: &mut DragPass,
+    shared: &Shared<'a>,
+    halves: &mut [Half<'a>; HALVES],
+    records: &mut [Option<TraceRecord>],
+) -> Result<(), EngineError> {
+    loop {
+        for (number, half) in halves.iter_mut().enumerate() {
+            shared.job.go_on()?;
+            half.collect(pass, number, shared)?;
+            if shared.astray.load(Ordering::Relaxed) {
+                return Err(pass.device().failed("it named an event that cannot be").into());
+            }
+            half.send(pass, number, shared);
+            // What finds no room on the device goes on on the CPU, and makes room for others.
+            while half.active.is_empty() && half.fill(pass, number, shared, records)? {
+                shared.job.go_on()?;
+                half.send(pass, number, shared);
+            }
+            if shared.job.is_timed() {
+                // Alone on the machine, so that each phase's time is its own.
+                shared.job.time(Phase::Kernel, || pass.wait(number))?;
+            }
+        }
+        if halves.iter().all(|half| half.active.is_empty()) {
+            return Ok(());
+        }
+    }
+}
+
+/// A half of the batch and its round.
+struct Half<'a> {
+    slots: Vec<Slot<'a>>,
+    /// The slots that are on the device, in the order of their lanes.
+    active: Vec<usize>,
+    /// How many there were when the half was filled.
+    filled: usize,
+    lanes: Vec<Lane>,
+}
+
+impl<'a> Half<'a> {
+    fn new(slots: usize) -> Self {
+        Half { slots: (0..slots).map(|_| Slot::new()).collect(), active: Vec::new(), filled: 0, lanes: Vec::new() }
+    }
+
+    /// Takes the traces that were on the device as far as it took them, and those that it was not certain of a bit
+    /// further. When few are left they go on to the end of their piece.
+    fn collect(&mut self, pass: &mut DragPass, number: usize, shared: &Shared<'a>) -> Result<(), EngineError> {
+        if self.active.is_empty() {
+            return Ok(());
+        }
+        let first = pass.first_point(number);
+        let Half { slots, active, filled, .. } = self;
+        let mut on = chosen(slots, active);
+        pass.collect(number, |lanes, notes| {
+            shared.job.time(Phase::Update, || {
+                on.par_iter_mut().zip(lanes).zip(notes.par_chunks(NOTES)).with_min_len(16).for_each_init(
+                    || shared.hand(),
+                    |hand, ((slot, lane), notes)| slot.collect(hand, shared, first, lane, notes),
+                );
+            });
+        })?;
+        active.retain(|&slot| slots[slot].is_on_its_way());
+        if active.len() <= (*filled / STRAGGLERS).max(FEW) {
+            let mut left = chosen(slots, active);
+            left.par_iter_mut().for_each_init(|| shared.hand(), |hand, slot| slot.finish_piece(hand, shared));
+            active.clear();
+        }
+        Ok(())
+    }
+
+    /// Gives every slot a piece of its trace, or of the next one where that is done; false if there are none left.
+    fn fill(
+        &mut self,
+        pass: &mut DragPass,
+        number: usize,
+        shared: &Shared<'a>,
+        records: &mut [Option<TraceRecord>],
+    ) -> Result<bool, GpuError> {
+        let Half { slots, active, filled, .. } = self;
+        let most = PIECE.min(pass.room().points - 1);
+        let mut taken = 0;
+        let mut with_piece = Vec::with_capacity(slots.len());
+        let mut any = false;
+        for (i, slot) in slots.iter_mut().enumerate() {
+            if let Some((done, record)) = slot.next_trace(shared) {
+                records[done] = Some(record);
+            }
+            let Some(chunks) = slot.take_piece(taken, most) else { continue };
+            any = true;
+            if taken + chunks * CHUNK > pass.room().points {
+                slot.put_back();
+                break;
+            }
+            taken += chunks * CHUNK;
+            with_piece.push(i);
+        }
+        shared.job.time(Phase::Upload, || {
+            let parts: Vec<_> = with_piece.iter().map(|&i| (slots[i].chunks(), slots[i].points())).collect();
+            pass.bring_points(number, &parts, |points, chunk, places| {
+                let points = &points[chunk * CHUNK..];
+                places.iter_mut().zip(points).for_each(|(place, &p)| *place = shared.grid.place(p));
+            })?;
+            chosen(slots, &with_piece)
+                .par_iter_mut()
+                .with_min_len(16)
+                .for_each_init(|| shared.hand(), |hand, slot| slot.position(hand, shared));
+            Ok::<_, GpuError>(())
+        })?;
+        *active = with_piece;
+        active.retain(|&slot| slots[slot].is_on_its_way());
+        *filled = active.len();
+        Ok(any)
+    }
+
+    /// Sends the traces that are on their way. Those whose fans find no room go on on the CPU.
+    fn send(&mut self, pass: &mut DragPass, number: usize, shared: &Shared<'a>) {
+        let Half { slots, active, lanes, .. } = self;
+        shared.job.time(Phase::Upload, || {
+            let bring =
+                |pass: &mut DragPass, slots: &[Slot<'a>]| active.iter().all(|&i| slots[i].bring_fan(pass, shared));
+            if !bring(pass, slots) {
+                pass.forget();
+                bring(pass, slots);
+            }
+            let (on, off): (Vec<usize>, Vec<usize>) = active.iter().partition(|&&i| pass.has_fan(slots[i].pivot()));
+            let mut left = chosen(slots, &off);
+            left.par_iter_mut().for_each_init(|| shared.hand(), |hand, slot| slot.finish_piece(hand, shared));
+            *active = on;
+            lanes.clear();
+            let first = pass.first_point(number);
+            for &i in &*active {
+                lanes.push(slots[i].lane(first, i));
+                pass.bring_stack(number, i, &slots[i].take_stack());
+            }
+            pass.send(number, lanes, LOOKS);
+        });
+    }
+}
+
+/// The items of these numbers, which increase.
+fn chosen<'s, T>(items: &'s mut [T], numbers: &[usize]) -> Vec<&'s mut T> {
+    let mut numbers = numbers.iter().peekable();
+    let is_chosen = |(i, _): &(usize, &mut T)| numbers.next_if_eq(&i).is_some();
+    items.iter_mut().enumerate().filter(is_chosen).map(|(_, item)| item).collect()
+}

@@ -1,0 +1,402 @@
+//! The kernel that takes traces along, `shaders/drag.wgsl`: its buffers, and its round trips.
+
+use std::sync::mpsc;
+
+use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
+use wgpu::{BufferUsages, PollType};
+
+use super::buffers::{PATIENCE, binding, buffer};
+use super::lane::{Lane, NOTES, Note, Room, STACK, Stacked};
+use super::pass::HALVES;
+use super::{Device, GpuError};
+
+/// The source of the kernel that takes traces along.
+pub const DRAG_WGSL: &str = include_str!("../../shaders/drag.wgsl");
+
+/// How many points are written at a time.
+pub const CHUNK: usize = 64;
+
+/// The size of a point, in bytes.
+const POINT: usize = size_of::<[i32; 2]>();
+
+/// How many looks a lane takes in a round at most: a round takes some milliseconds.
+const LOOKS: u32 = 1 << 13;
+
+/// The shader's `Job`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Job {
+    pub lanes: u32,
+    pub turns: u32,
+    pub looks: u32,
+    pub anchor: u32,
+}
+
+/// Where a pivot's fan lies, and the pivot; the shader's `pivots`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Head {
+    first: u32,
+    rays: u32,
+    place: [i32; 2],
+}
+
+/// Takes traces along on a device, in up to [`HALVES`] rounds at a time.
+pub struct DragPass {
+    device: Device,
+    pipeline: wgpu::ComputePipeline,
+    workgroup: u32,
+    room: Room,
+    data: wgpu::Buffer,
+    vertices: wgpu::Buffer,
+    pivots: wgpu::Buffer,
+    heads: Vec<Head>,
+    heads_changed: bool,
+    /// How many rays there are on the device, and those that are not there yet.
+    filled: usize,
+    new_ways: Vec<[f32; 2]>,
+    new_vertices: Vec<u32>,
+    halves: [Half; HALVES],
+}
+
+struct Half {
+    job: wgpu::Buffer,
+    lanes: wgpu::Buffer,
+    stacks: wgpu::Buffer,
+    notes: wgpu::Buffer,
+    lanes_back: wgpu::Buffer,
+    notes_back: wgpu::Buffer,
+    /// Where points are written to before they are copied; mapped, but while a round is on its way.
+    upload: wgpu::Buffer,
+    /// How many bytes of it are to be copied.
+    written: u64,
+    mapping: Option<mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>>,
+    bindings: wgpu::BindGroup,
+    sent: Option<Sent>,
+}
+
+struct Sent {
+    submission: wgpu::SubmissionIndex,
+    /// How many bytes of lanes and of notes come back.
+    bytes: [u64; 2],
+    lanes: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+    notes: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+impl DragPass {
+    /// The most room that a device has for a pass, in at most `budget` bytes of points and fans.
+    pub fn most(device: &Device, budget: usize, lanes: usize) -> Room {
+        let limits = device.device.limits();
+        let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(budget as u64) as usize;
+        let all = bytes / size_of::<[u32; 2]>();
+        let stack_bytes = STACK * size_of::<Stacked>();
+        let lanes = lanes.min(limits.max_storage_buffer_binding_size as usize / stack_bytes);
+        Room { lanes, points: (all / 8 * 3 / CHUNK).max(1) * CHUNK, rays: (all / 4).max(1) }
+    }
+
+    /// A pass of the kernel with source `wgsl` about pivots at these `places`, the anchor last.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of, be it the shader or the memory.
+    pub fn new(opened: Device, places: &[[i32; 2]], room: Room, workgroup: u32, wgsl: &str) -> Result<Self, GpuError> {
+        let device = &opened.device;
+        let storage = |number, read_only| binding(number, wgpu::BufferBindingType::Storage { read_only }, false);
+        let entries = [
+            binding(0, wgpu::BufferBindingType::Uniform, false),
+            storage(1, true),
+            storage(2, true),
+            storage(3, true),
+            storage(4, false),
+            storage(5, false),
+            storage(6, false),
+        ];
+        let layout = device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("drag"), entries: &entries });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("drag"),
+            layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("drag"),
+                bind_group_layouts: &[Some(&layout)],
+                immediate_size: 0,
+            })),
+            module: &device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("drag"),
+                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+            }),
+            entry_point: Some("drag"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &[("WORKGROUP", f64::from(workgroup))],
+                ..Default::default()
+            },
+            cache: None,
+        });
+        let input = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        let data = buffer(device, "data", (room.rays + HALVES * room.points) * size_of::<[u32; 2]>(), input);
+        let vertices = buffer(device, "vertices", room.rays * size_of::<u32>(), input);
+        let heads: Vec<Head> = places.iter().map(|&place| Head { first: 0, rays: 0, place }).collect();
+        let pivots = buffer(device, "pivots", size_of_val(&*heads), input);
+        let halves = std::array::from_fn(|_| Half::new(device, &layout, room, [&data, &vertices, &pivots]));
+        opened.check()?;
+        Ok(DragPass {
+            device: opened,
+            pipeline,
+            workgroup,
+            room,
+            data,
+            vertices,
+            pivots,
+            heads,
+            heads_changed: true,
+            filled: 0,
+            new_ways: Vec::new(),
+            new_vertices: Vec::new(),
+            halves,
+        })
+    }
+
+    /// The adapter on which it runs.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
+    /// The room that it has.
+    pub fn room(&self) -> Room {
+        self.room
+    }
+
+    /// Whether the fan of a pivot, by its index, lies on the device.
+    #[inline]
+    pub fn has_fan(&self, pivot: usize) -> bool {
+        self.heads[pivot].rays > 0
+    }
+
+    /// Brings the fan of a pivot; false if there is no room for it.
+    pub fn bring_fan(&mut self, pivot: usize, ways: &[[f32; 2]], vertices: impl Iterator<Item = u32>) -> bool {
+        let first = self.filled + self.new_ways.len();
+        if first + ways.len() > self.room.rays {
+            return false;
+        }
+        self.new_ways.extend_from_slice(ways);
+        self.new_vertices.extend(vertices);
+        let head = &mut self.heads[pivot];
+        (head.first, head.rays) = (first as u32, ways.len() as u32);
+        self.heads_changed = true;
+        true
+    }
+
+    /// Forgets all fans.
+    pub fn forget(&mut self) {
+        self.heads.iter_mut().for_each(|head| head.rays = 0);
+        (self.filled, self.heads_changed) = (0, true);
+        self.new_ways.clear();
+        self.new_vertices.clear();
+    }
+
+    /// Where a half's points begin.
+    pub fn first_point(&self, half: usize) -> u32 {
+        (self.room.rays + half * self.room.points) as u32
+    }
+
+    /// Brings the points of a half, the first to [`first_point`](Self::first_point), with the next round: a part after
+    /// the other, each as many [`CHUNK`]s as it says. They are written on all threads: `write` is given a part, the number
+    /// of one of its chunks, and the chunk.
+    ///
+    /// # Errors
+    ///
+    /// As [`wait`](Self::wait).
+    ///
+    /// # Panics
+    ///
+    /// If there are more points than a half has room for.
+    pub fn bring_points<T: Sync>(
+        &mut self,
+        half: usize,
+        parts: &[(usize, T)],
+        write: impl Fn(&T, usize, &mut [[i32; 2]; CHUNK]) + Sync,
+    ) -> Result<(), GpuError> {
+        let failed = |e: &dyn std::fmt::Display| self.device.failed(e.to_string());
+        if let Some(mapped) = self.halves[half].mapping.take() {
+            self.device.device.poll(PollType::Poll).map_err(|e| failed(&e))?;
+            mapped.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
+        }
+        let Half { upload, written, .. } = &mut self.halves[half];
+        *written = parts.iter().map(|(chunks, _)| chunks * CHUNK * POINT).sum::<usize>() as u64;
+        if *written == 0 {
+            return Ok(());
+        }
+        let mut view = upload.get_mapped_range_mut(0..*written).map_err(|e| failed(&e))?;
+        // What is behind a slice of mapped memory cannot go to another thread, what is behind an array of it can.
+        let mut chunks = view.slice(..).into_chunks::<{ CHUNK * POINT }>().0.into_iter();
+        let mut split = Vec::with_capacity(parts.len());
+        for (count, part) in parts {
+            split.push((part, chunks.by_ref().take(*count).collect::<Vec<_>>()));
+        }
+        split.into_par_iter().with_min_len(16).for_each(|(part, chunks)| {
+            let mut points = [[0; 2]; CHUNK];
+            for (i, chunk) in chunks.into_iter().enumerate() {
+                write(part, i, &mut points);
+                chunk.write(bytemuck::cast(points));
+            }
+        });
+        Ok(())
+    }
+
+    /// Brings the last contacts of the trace of this number, at most [`STACK`].
+    pub fn bring_stack(&self, half: usize, number: usize, stack: &[Stacked]) {
+        if !stack.is_empty() {
+            let at = (number * STACK * size_of::<Stacked>()) as u64;
+            self.device.queue.write_buffer(&self.halves[half].stacks, at, bytemuck::cast_slice(stack));
+        }
+    }
+
+    /// Sends a round, in which events are seen to after every so many `looks`, at least 1.
+    ///
+    /// # Panics
+    ///
+    /// If there are more lanes than a half has, or if the half's last round was not collected.
+    pub fn send(&mut self, half: usize, lanes: &[Lane], looks: u32) {
+        assert!(lanes.len() <= self.room.lanes, "a half takes what it has room for");
+        let Device { device, queue, .. } = &self.device;
+        if !self.new_ways.is_empty() {
+            queue.write_buffer(&self.data, 8 * self.filled as u64, bytemuck::cast_slice(&self.new_ways));
+            queue.write_buffer(&self.vertices, 4 * self.filled as u64, bytemuck::cast_slice(&self.new_vertices));
+            self.filled += self.new_ways.len();
+            self.new_ways.clear();
+            self.new_vertices.clear();
+        }
+        if std::mem::take(&mut self.heads_changed) {
+            queue.write_buffer(&self.pivots, 0, bytemuck::cast_slice(&self.heads));
+        }
+        let points_at = u64::from(self.first_point(half)) * POINT as u64;
+        let Half {
+            job, lanes: buffer, notes, lanes_back, notes_back, upload, written, mapping, bindings, sent, ..
+        } = &mut self.halves[half];
+        assert!(sent.is_none(), "a half takes one round at a time");
+        if lanes.is_empty() {
+            return;
+        }
+        let anchor = self.heads.len() as u32 - 1;
+        let with = Job { lanes: lanes.len() as u32, turns: LOOKS / looks, looks, anchor };
+        queue.write_buffer(job, 0, bytemuck::bytes_of(&with));
+        queue.write_buffer(buffer, 0, bytemuck::cast_slice(lanes));
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("drag") });
+        let written = std::mem::take(written);
+        if written > 0 {
+            upload.unmap();
+            encoder.copy_buffer_to_buffer(upload, 0, &self.data, points_at, written);
+            *mapping = Some(mapped(&encoder, upload, wgpu::MapMode::Write, upload.size()));
+        }
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &*bindings, &[]);
+            pass.dispatch_workgroups(with.lanes.div_ceil(self.workgroup), 1, 1);
+        }
+        let bytes = [size_of_val(lanes) as u64, (lanes.len() * NOTES * size_of::<Note>()) as u64];
+        encoder.copy_buffer_to_buffer(buffer, 0, lanes_back, 0, bytes[0]);
+        encoder.copy_buffer_to_buffer(notes, 0, notes_back, 0, bytes[1]);
+        let lanes = mapped(&encoder, lanes_back, wgpu::MapMode::Read, bytes[0]);
+        let notes = mapped(&encoder, notes_back, wgpu::MapMode::Read, bytes[1]);
+        let submission = queue.submit([encoder.finish()]);
+        *sent = Some(Sent { submission, bytes, lanes, notes });
+    }
+
+    /// Waits until the half's round, if there is one, is done.
+    ///
+    /// # Errors
+    ///
+    /// What the device complains of, or that it does not answer.
+    pub fn wait(&self, half: usize) -> Result<(), GpuError> {
+        let Some(sent) = &self.halves[half].sent else { return Ok(()) };
+        let wait = PollType::Wait { submission_index: Some(sent.submission.clone()), timeout: Some(PATIENCE) };
+        match self.device.device.poll(wait) {
+            Ok(_) => self.device.check(),
+            Err(wgpu::PollError::Timeout) => {
+                Err(GpuError::Timeout { adapter: self.device.summary().name.clone(), seconds: PATIENCE.as_secs() })
+            }
+            Err(other) => Err(self.device.failed(other)),
+        }
+    }
+
+    /// Waits for the half's round, if there is one, and gives its lanes and their notes, [`NOTES`] a lane, to `read`.
+    ///
+    /// # Errors
+    ///
+    /// As [`wait`](Self::wait).
+    pub fn collect<T>(&mut self, half: usize, read: impl FnOnce(&[Lane], &[Note]) -> T) -> Result<Option<T>, GpuError> {
+        let waited = self.wait(half);
+        let Half { lanes_back, notes_back, sent, .. } = &mut self.halves[half];
+        let Some(Sent { bytes, lanes, notes, .. }) = sent.take() else { return waited.map(|()| None) };
+        let failed = |e: &dyn std::fmt::Display| self.device.failed(e.to_string());
+        let done = waited.and_then(|()| {
+            for mapped in [lanes, notes] {
+                mapped.recv().map_err(|e| failed(&e))?.map_err(|e| failed(&e))?;
+            }
+            let lanes = lanes_back.get_mapped_range(0..bytes[0]).map_err(|e| failed(&e))?;
+            let notes = notes_back.get_mapped_range(0..bytes[1]).map_err(|e| failed(&e))?;
+            Ok(Some(read(bytemuck::cast_slice(&lanes), bytemuck::cast_slice(&notes))))
+        });
+        // Also after an error, so that the next round finds the buffers free.
+        lanes_back.unmap();
+        notes_back.unmap();
+        done
+    }
+}
+
+/// Maps a buffer once what is encoded is done.
+fn mapped(
+    encoder: &wgpu::CommandEncoder,
+    buffer: &wgpu::Buffer,
+    mode: wgpu::MapMode,
+    bytes: u64,
+) -> mpsc::Receiver<Result<(), wgpu::BufferAsyncError>> {
+    let (sender, mapped) = mpsc::sync_channel(1);
+    encoder.map_buffer_on_submit(buffer, mode, 0..bytes, move |result| {
+        // The receiver is gone only if waiting failed, which is reported there.
+        let _ = sender.send(result);
+    });
+    mapped
+}
+
+impl Half {
+    fn new(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, room: Room, shared: [&wgpu::Buffer; 3]) -> Self {
+        let job = buffer(device, "job", size_of::<Job>(), BufferUsages::UNIFORM | BufferUsages::COPY_DST);
+        let sizes =
+            [size_of::<Lane>(), STACK * size_of::<Stacked>(), NOTES * size_of::<Note>()].map(|size| size * room.lanes);
+        let both = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+        let back = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
+        let [lanes, stacks, notes] =
+            [("lanes", sizes[0]), ("stacks", sizes[1]), ("notes", sizes[2])].map(|(l, s)| buffer(device, l, s, both));
+        let [lanes_back, notes_back] =
+            [("lanes back", sizes[0]), ("notes back", sizes[2])].map(|(l, s)| buffer(device, l, s, back));
+        let upload = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("upload"),
+            size: (room.points * POINT) as u64,
+            usage: BufferUsages::MAP_WRITE | BufferUsages::COPY_SRC,
+            mapped_at_creation: true,
+        });
+        let [data, vertices, pivots] = shared;
+        let all = [&job, data, vertices, pivots, &lanes, &stacks, &notes];
+        let entries: Vec<_> = (0..)
+            .zip(all)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        let bindings =
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("drag"), layout, entries: &entries });
+        Half {
+            job,
+            lanes,
+            stacks,
+            notes,
+            lanes_back,
+            notes_back,
+            upload,
+            written: 0,
+            mapping: None,
+            bindings,
+            sent: None,
+        }
+    }
+}
