@@ -114,9 +114,10 @@ impl From<EngineError> for Failure {
         match error {
             EngineError::Gpu(error) => error.into(),
             EngineError::Stopped => Failure::interrupted(false),
-            EngineError::Unfit { .. } | EngineError::NoDevice { .. } | EngineError::Precision { .. } => {
-                Failure::input(error.into())
-            }
+            EngineError::Unfit { .. }
+            | EngineError::NoDevice { .. }
+            | EngineError::Precision { .. }
+            | EngineError::TwoEnds { .. } => Failure::input(error.into()),
         }
     }
 }

@@ -1,16 +1,18 @@
 //! The window pipeline for machines without a GPU: one trace after the other on each thread.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use glam::DVec2;
 use rayon::prelude::*;
 
+use super::ends;
 use super::table::Open;
 use super::windows::Windows;
 use super::{Engine, EngineError, EngineKind, Job, Phase, Precision, Promise, WINDOW};
 use crate::candidates::{List, Lists, ROOM, Simd, Slopes};
-use crate::rope::TraceRecord;
+use crate::rope::{EndsRecord, TraceRecord};
 use crate::scene::{Model, Pivot};
-use crate::trace::{SettledTrace, bounds};
+use crate::trace::{SettledEnds, SettledTrace, bounds};
 use crate::visibility::Scratch;
 
 /// The engine for machines without a GPU.
@@ -32,6 +34,8 @@ const RECENT: usize = 256;
 /// Evaluates traces on all cores, for one model.
 pub struct Cpu {
     lists: Lists,
+    /// For ropes whose ends both move, wherever they start; made when there is one.
+    anywhere: OnceLock<Lists>,
     window: usize,
     simd: Simd,
 }
@@ -44,7 +48,7 @@ impl Cpu {
 
     /// An engine that tries the vertices of `lists`.
     pub fn with_lists(lists: Lists) -> Self {
-        Cpu { lists, window: WINDOW, simd: Simd::detected() }
+        Cpu { lists, anywhere: OnceLock::new(), window: WINDOW, simd: Simd::detected() }
     }
 
     /// The same engine with windows of at most `legs` legs, at least 1.
@@ -96,12 +100,26 @@ impl Engine for Cpu {
         traces.par_iter().map_init(lane, |lane, trace| lane.evaluate(trace, job)).collect()
     }
 
+    fn evaluate_ends(&mut self, traces: &[SettledEnds], job: &Job) -> Result<Vec<EndsRecord>, EngineError> {
+        let lists = self.anywhere.get_or_init(|| self.lists.anywhere());
+        let model = lists.model();
+        let find = |about: ends::About, leg: [DVec2; 2], tried: &mut Vec<u32>| {
+            let squared = leg.map(|a| a.distance_squared(about.1)).into_iter().fold(0.0, f64::max);
+            match about.0.and_then(|vertex| lists.of(Pivot::at_vertex(vertex), squared)) {
+                Some(list) => tried.extend(list.numbers().take(list.within(squared))),
+                None => ends::near(model, about, leg, tried),
+            }
+        };
+        traces.par_iter().map(|trace| ends::evaluate(model, trace, job, find)).collect()
+    }
+
     fn remaining(&self) -> Option<usize> {
         self.lists.remaining_count()
     }
 
     fn forget(&mut self) {
         self.lists.forget();
+        self.anywhere.take();
     }
 }
 
@@ -120,7 +138,7 @@ struct Lane<'e> {
 
 impl Lane<'_> {
     fn evaluate(&mut self, trace: &SettledTrace, job: &Job) -> Result<TraceRecord, EngineError> {
-        let Cpu { lists, window, simd } = self.engine;
+        let Cpu { lists, window, simd, .. } = self.engine;
         let model = lists.model();
         self.windows.start(model, trace);
         let (mut told, mut tests) = (0, 0);

@@ -2,6 +2,7 @@
 //! vertices to try (but for `note` and `funnel`, which are other methods altogether).
 
 mod cpu;
+mod ends;
 mod engine;
 mod engines;
 mod error;

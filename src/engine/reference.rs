@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use super::ends;
 use super::progress::Progress;
 use super::table::Open;
 use super::{Engine, EngineError, EngineKind, Job, Precision, Promise};
-use crate::rope::TraceRecord;
+use crate::rope::{EndsRecord, TraceRecord};
 use crate::scene::Model;
-use crate::trace::SettledTrace;
+use crate::trace::{SettledEnds, SettledTrace};
 
 /// The arbiter.
 pub static REFERENCE: EngineKind = EngineKind {
@@ -54,5 +55,9 @@ impl Engine for Reference {
             records.push(progress.record(trace));
         }
         Ok(records)
+    }
+
+    fn evaluate_ends(&mut self, traces: &[SettledEnds], job: &Job) -> Result<Vec<EndsRecord>, EngineError> {
+        traces.iter().map(|trace| ends::evaluate(&self.model, trace, job, ends::all(&self.model))).collect()
     }
 }

@@ -1,6 +1,7 @@
 //! The rope: the stack of contacts, the exact update, and the record of what happened. Knows nothing of files, threads
 //! or GPUs.
 
+mod free_rope;
 mod moment;
 mod record;
 mod replay;
@@ -8,14 +9,17 @@ mod rounds;
 mod stack;
 mod step_columns;
 mod steps;
+mod strand;
 mod update;
 
+pub use free_rope::{FreeContact, FreeRope};
 pub use moment::Moment;
-pub use record::{Event, EventKind, Status, TraceRecord};
+pub use record::{EndsRecord, Event, EventKind, Status, TraceRecord};
 pub(crate) use replay::{Lasting, lasting};
 pub use replay::{moments, replay};
 pub use rounds::Rounds;
 pub use stack::{Contact, Rope, Side};
 pub use step_columns::StepColumns;
 pub use steps::{RopeStep, Steps};
+pub use strand::Strand;
 pub use update::{Leg, Sweep};

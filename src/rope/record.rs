@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Side;
+use crate::trace::End;
 
 /// What happened to the rope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -81,4 +82,14 @@ pub struct TraceRecord {
     pub pull: Option<DVec2>,
     /// Every push and pop, in order.
     pub events: Vec<Event>,
+}
+
+/// The result of one trace of a rope whose ends both move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EndsRecord {
+    /// What is said of every trace: lengths and depths after every step of both ends, the rope from where the anchor is
+    /// at last, the pull of the free end, and the events. These come and go at either end.
+    pub record: TraceRecord,
+    /// At which end each of the events happened.
+    pub ends: Vec<End>,
 }

@@ -8,6 +8,7 @@ mod conservative;
 mod corpus;
 mod decide;
 mod drawings;
+mod ends;
 mod engine_table;
 mod examples;
 mod extremes;
