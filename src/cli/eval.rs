@@ -5,9 +5,10 @@ use std::time::Instant;
 
 use tautline::engine::{Engine, Job, Precision};
 use tautline::output::check_output;
-use tautline::stream::{Account, Batches, Files, Stage, evaluate};
+use tautline::stream::{Account, Batches, EndsFiles, Files, Report, Source, Stage, evaluate};
 use tautline::trade::Terms;
 
+use super::ends::{self, EndsArgs, Given};
 use super::engine::EngineArgs;
 use super::failure::Failure;
 use super::input::{InputArgs, dropped};
@@ -28,7 +29,7 @@ pub(crate) struct Args {
         long, value_name = "FILE", requires = "scene",
         conflicts_with_all = [
             "traces", "anchor", "events", "steps", "engine", "adapter", "precision", "stride", "simplify",
-            "on_violation",
+            "on_violation", "anchor_trace",
         ]
     )]
     queries: Option<PathBuf>,
@@ -38,6 +39,8 @@ pub(crate) struct Args {
     /// Where to write every wrap and unwrap: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
+    #[command(flatten)]
+    ends: EndsArgs,
     #[command(flatten)]
     every: StepArgs,
     #[command(flatten)]
@@ -55,12 +58,20 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return super::queries::run(scene, queries, args.out.as_deref(), args.json);
     }
     let start = Instant::now();
+    // What is wrong with the traces is said after what is wrong with the scene.
+    let mut source = args.input.source();
+    if let Ok(given) = &mut source
+        && args.ends.move_in(given)?
+        && let Ok(Source::File(traces)) = source
+    {
+        return ends::run(&args.of_ends(), traces);
+    }
     let terms = args.trade.terms(&args.input.name(), args.input.model()?)?;
     let model = &terms.used;
     if model.scene().dropped() > 0 {
         say!("note: {}", dropped(model.scene().dropped()));
     }
-    let source = args.input.source()?;
+    let source = source?;
     let (mut engine, on) = args.engine.open(model)?;
     let batches = Batches::start(source, terms.clone(), engine.batch());
     let mut account = Account::new(&args.input.name(), &terms, &*engine, on);
@@ -81,12 +92,30 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let outcome = with_progress(&progress, &job, || evaluate(batches, &mut *engine, files, policy, &job, watch));
     let times = outcome.map_err(|error| violations.failure(error))?;
     violations.finish();
-    let report = account.report(&*engine, &job, &times, start.elapsed());
-    if args.json {
-        return print_json(&report);
+    finish(&account.report(&*engine, &job, &times, start.elapsed()), args.json, args.out.is_none())
+}
+
+/// Prints what a run came to; with a hint, if it is to have one.
+pub(super) fn finish(report: &Report, json: bool, has_hint: bool) -> Result<(), Failure> {
+    if json {
+        return print_json(report);
     }
     let hint = "--out FILE writes every trace's rope, --events FILE every wrap and unwrap\n";
-    print(&format!("{}{}", table(&report), if args.out.is_none() { hint } else { "" }))
+    print(&format!("{}{}", table(report), if has_hint { hint } else { "" }))
+}
+
+impl Args {
+    /// The same where both ends of ropes move.
+    fn of_ends(&self) -> Given<'_> {
+        let files = EndsFiles { out: self.out.as_deref(), events: self.events.as_deref() };
+        let others = [
+            ("--anchor", self.input.anchor.is_some()),
+            ("--steps", self.every.steps.is_some()),
+            ("--stride", self.trade.stride.is_some()),
+            ("--simplify", self.trade.simplify.is_some()),
+        ];
+        Given { input: &self.input, ends: &self.ends, engine: &self.engine, files, others, json: self.json }
+    }
 }
 
 /// What results say of themselves: nothing if they are exact.
@@ -102,6 +131,7 @@ fn check_outputs(args: &Args) -> Result<(), Failure> {
     outputs.into_iter().flatten().try_for_each(|path| check_output(path))?;
     let [out, events, steps] = outputs.map(Option::as_deref);
     let [scene, traces] = args.input.named();
-    let inputs = [scene, traces, ("--queries", args.queries.as_deref())];
+    let paths = args.ends.anchor_trace.as_deref();
+    let inputs = [scene, traces, ("--queries", args.queries.as_deref()), ("--anchor-trace", paths)];
     keep_apart(&inputs, &[("--out", out), ("--events", events), ("--steps", steps)])
 }

@@ -128,7 +128,10 @@ impl From<StreamError> for Failure {
             StreamError::Read(error) => error.into(),
             StreamError::Engine(error) => error.into(),
             StreamError::Write(error) => error.into(),
-            StreamError::Violation(_) => Failure::input(error.into()),
+            StreamError::Violation(_)
+            | StreamError::AnchorViolation(_)
+            | StreamError::Ends(_)
+            | StreamError::NoAnchor { .. } => Failure::input(error.into()),
             StreamError::Ended => Failure::internal(error.into()),
         }
     }

@@ -21,6 +21,7 @@ pub static CPU: EngineKind = EngineKind {
     about: "The same on threads",
     precisions: &[Precision::Certified],
     asks: true,
+    both_ends: true,
     promise: Promise::Events,
     open: Open::Threads(|model, options| Box::new(Cpu::new(model).window(options.window))),
 };

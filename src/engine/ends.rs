@@ -117,7 +117,7 @@ fn free(
     let (mut at, mut tried) = ([0, 0], Vec::new());
     let (mut events, mut ends) = (Vec::new(), Vec::new());
     let (mut max_length, mut max_depth) = (0f64, 0);
-    let steps = trace.path(End::Free).steps();
+    let steps = trace.steps();
     for step in 0..=steps {
         job.go_on()?;
         let mut tests = 0;

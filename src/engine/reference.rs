@@ -16,6 +16,7 @@ pub static REFERENCE: EngineKind = EngineKind {
     about: "One trace and one step after the other, every vertex tried: the arbiter",
     precisions: &[Precision::Certified],
     asks: false,
+    both_ends: true,
     promise: Promise::Events,
     open: Open::Thread(|model| Box::new(Reference::new(model))),
 };

@@ -137,7 +137,7 @@ mod tests {
             let turn = if hair.turn == Turn::Left { angle } else { -angle };
             a.at + length * (d + d.perp() * turn)
         };
-        let [short, long] = [[2f64.powi(-30), 2f64.powi(-14)], [2f64.powi(-12), 2f64.powi(-8)]];
+        let [short, long] = [[2f64.powi(-32), 2f64.powi(-10)], [2f64.powi(-16), 2f64.powi(-5)]];
         for (i, &rests) in ends.iter().enumerate() {
             for &p in &lattice {
                 for &moves in ends.iter().skip(i % 5).step_by(5) {

@@ -93,3 +93,10 @@ pub struct EndsRecord {
     /// At which end each of the events happened.
     pub ends: Vec<End>,
 }
+
+impl EndsRecord {
+    /// Every event with the end at which it happened, in order.
+    pub fn events(&self) -> impl Iterator<Item = (&Event, End)> {
+        self.record.events.iter().zip(self.ends.iter().copied())
+    }
+}

@@ -12,10 +12,15 @@ use arrow_schema::{DataType, Schema};
 use parquet::basic::Compression;
 use parquet::file::metadata::ParquetMetaData;
 
-use super::gather::STEP;
+use super::gather::{ANCHOR, STEP};
 
-/// The columns; the last may be missing.
-const COLUMNS: [&str; 4] = ["trace", "x", "y", STEP];
+/// The columns; those from the fourth on may be missing.
+const COLUMNS: [&str; 6] = ["trace", "x", "y", STEP, ANCHOR[0], ANCHOR[1]];
+
+/// Whether rows say where the anchor is. Either of the two columns alone is some other one.
+pub(super) fn moves_anchor(schema: &Schema) -> bool {
+    ANCHOR.iter().all(|column| schema.fields().iter().any(|field| field.name() == column))
+}
 
 /// A fault with its row in the batch.
 type InRow = (usize, String);
@@ -23,7 +28,8 @@ type InRow = (usize, String);
 /// The numbers of the columns in a schema, whose types must fit.
 pub(super) fn find(schema: &Schema) -> Result<Vec<usize>, String> {
     let mut columns = Vec::new();
-    for name in COLUMNS {
+    let tied = if moves_anchor(schema) { &[][..] } else { &ANCHOR };
+    for name in COLUMNS.into_iter().filter(|name| !tied.contains(name)) {
         let mut found = (0..schema.fields().len()).filter(|&i| schema.field(i).name() == name);
         let number = match (found.next(), found.next()) {
             (Some(number), None) => number,

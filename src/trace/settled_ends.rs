@@ -131,6 +131,17 @@ impl SettledEnds {
         self.anchor.points.iter().all(|&p| p == self.start())
     }
 
+    /// The number of steps. In step 0 the free end moves from where the anchor starts to its first point.
+    pub fn steps(&self) -> usize {
+        self.free.steps()
+    }
+
+    /// How many steps leave both ends where they are. O(steps).
+    pub fn still(&self) -> usize {
+        let [free, anchor] = [self.free.ends(), self.anchor.ends()];
+        free.windows(2).zip(anchor.windows(2)).filter(|(a, b)| a[0] == a[1] && b[0] == b[1]).count()
+    }
+
     /// The first step that breaks the rules, and the end that it moves; the free end's where both do.
     pub fn violation(&self) -> Option<(End, &Violation)> {
         let first = |end| self.path(end).violation().map(|violation| (end, violation));

@@ -23,6 +23,7 @@ pub static GPU: EngineKind = EngineKind {
     about: "A compute shader finds candidates for many traces at once, the CPU decides exactly",
     precisions: &[Precision::Certified, Precision::Fast],
     asks: true,
+    both_ends: false,
     promise: Promise::Events,
     open: Open::Device(|device, model, options| {
         Ok(match options.precision {
