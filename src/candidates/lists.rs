@@ -98,8 +98,8 @@ impl Lists {
         self
     }
 
-    /// Lists for ropes in the same scene that may start anywhere, of which none is made yet: with all that the pivots see,
-    /// be it out of reach of the model's anchor.
+    /// Lists for ropes in the same scene that may start anywhere, of which none is made yet: with all that the pivots
+    /// see, be it out of reach of the model's anchor.
     #[must_use]
     pub fn anywhere(&self) -> Lists {
         let Lists { keep_all, budget, worth, most, .. } = *self;

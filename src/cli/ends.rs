@@ -11,10 +11,10 @@ use tautline::trace::TraceReader;
 use tautline::trade::Terms;
 
 use super::engine::EngineArgs;
-use super::eval::finish;
 use super::failure::Failure;
 use super::input::{InputArgs, tie};
 use super::progress::{Progress, with_progress};
+use super::summary::finish;
 
 /// Where the anchors' paths are.
 #[derive(Debug, clap::Args)]
@@ -42,13 +42,22 @@ impl EndsArgs {
         Ok(in_rows || self.anchor_trace.is_some())
     }
 
+    /// Refuses a place to tie ropes at that are not tied.
+    pub(crate) fn refuse_anchor(&self, input: &InputArgs) -> Result<(), Failure> {
+        if input.anchor.is_some() { Err(refused("--anchor")) } else { Ok(()) }
+    }
+
     /// The paths of both ends.
-    fn source(&self, reader: TraceReader) -> Result<EndsSource, Failure> {
+    pub(crate) fn source(&self, reader: TraceReader) -> Result<EndsSource, Failure> {
         Ok(match &self.anchor_trace {
             Some(paths) => EndsSource::with_paths(reader, paths)?,
             None => EndsSource::in_rows(reader),
         })
     }
+}
+
+fn refused(option: &str) -> Failure {
+    Failure::input(anyhow!("the anchor moves in these traces, and {option} is for ropes that are tied: leave it out"))
 }
 
 /// What is given of a run.
@@ -58,15 +67,16 @@ pub(crate) struct Given<'a> {
     pub engine: &'a EngineArgs,
     pub files: EndsFiles<'a>,
     /// Options that do not go with it, if they are given.
-    pub others: [(&'static str, bool); 4],
+    pub others: [(&'static str, bool); 3],
     pub json: bool,
 }
 
 /// Evaluates ropes whose ends both move.
 pub(crate) fn run(given: &Given<'_>, traces: TraceReader) -> Result<(), Failure> {
     let Given { input, ends, engine, files, others, json } = given;
+    ends.refuse_anchor(input)?;
     if let Some((option, _)) = others.iter().find(|(_, is_given)| *is_given) {
-        return Err(Failure::input(anyhow!("the anchor moves in these traces: {option} is for ropes that are tied")));
+        return Err(refused(option));
     }
     let start = Instant::now();
     let mut source = ends.source(traces)?;

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use tautline::engine::{Engine, Job, Precision};
 use tautline::output::check_output;
-use tautline::stream::{Account, Batches, EndsFiles, Files, Report, Source, Stage, evaluate};
+use tautline::stream::{Account, Batches, EndsFiles, Files, Source, Stage, evaluate};
 use tautline::trade::Terms;
 
 use super::ends::{self, EndsArgs, Given};
@@ -15,9 +15,8 @@ use super::input::{InputArgs, dropped};
 use super::paths::keep_apart;
 use super::progress::{Progress, with_progress};
 use super::steps::StepArgs;
-use super::summary::table;
+use super::summary::finish;
 use super::trade::TradeArgs;
-use super::{print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -95,21 +94,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     finish(&account.report(&*engine, &job, &times, start.elapsed()), args.json, args.out.is_none())
 }
 
-/// Prints what a run came to; with a hint, if it is to have one.
-pub(super) fn finish(report: &Report, json: bool, has_hint: bool) -> Result<(), Failure> {
-    if json {
-        return print_json(report);
-    }
-    let hint = "--out FILE writes every trace's rope, --events FILE every wrap and unwrap\n";
-    print(&format!("{}{}", table(report), if has_hint { hint } else { "" }))
-}
-
 impl Args {
     /// The same where both ends of ropes move.
     fn of_ends(&self) -> Given<'_> {
         let files = EndsFiles { out: self.out.as_deref(), events: self.events.as_deref() };
         let others = [
-            ("--anchor", self.input.anchor.is_some()),
             ("--steps", self.every.steps.is_some()),
             ("--stride", self.trade.stride.is_some()),
             ("--simplify", self.trade.simplify.is_some()),

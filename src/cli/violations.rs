@@ -58,6 +58,21 @@ impl Violations {
         settled.iter().filter_map(|t| t.violation()).for_each(|violation| self.warn(violation));
     }
 
+    /// Looks through the next traces of ropes whose ends both move: the first violation is an error, or all are warned
+    /// of.
+    pub(crate) fn take_ends(&mut self, settled: &[SettledEnds]) -> Result<(), Failure> {
+        match (settled.iter().find_map(SettledEnds::violation), self.policy) {
+            (Some((End::Free, first)), OnViolation::Error) => Err(self.refused(first)),
+            (Some((End::Anchor, first)), OnViolation::Error) => {
+                Err(self.refused(format_args!("the anchor of {first}")))
+            }
+            _ => {
+                self.flag_ends(settled);
+                Ok(())
+            }
+        }
+    }
+
     /// The same of ropes whose ends both move.
     pub(crate) fn flag_ends(&mut self, settled: &[SettledEnds]) {
         settled.iter().filter_map(SettledEnds::violation).for_each(|(end, violation)| match end {

@@ -103,15 +103,8 @@ impl Engine for Cpu {
 
     fn evaluate_ends(&mut self, traces: &[SettledEnds], job: &Job) -> Result<Vec<EndsRecord>, EngineError> {
         let lists = self.anywhere.get_or_init(|| self.lists.anywhere());
-        let model = lists.model();
-        let find = |about: ends::About, leg: [DVec2; 2], tried: &mut Vec<u32>| {
-            let squared = leg.map(|a| a.distance_squared(about.1)).into_iter().fold(0.0, f64::max);
-            match about.0.and_then(|vertex| lists.of(Pivot::at_vertex(vertex), squared)) {
-                Some(list) => tried.extend(list.numbers().take(list.within(squared))),
-                None => ends::near(model, about, leg, tried),
-            }
-        };
-        traces.par_iter().map(|trace| ends::evaluate(model, trace, job, find)).collect()
+        let find = |about: ends::About, leg: [DVec2; 2], tried: &mut Vec<u32>| ends::listed(lists, about, leg, tried);
+        traces.par_iter().map(|trace| ends::evaluate(lists.model(), trace, job, find)).collect()
     }
 
     fn remaining(&self) -> Option<usize> {

@@ -4,9 +4,10 @@ use glam::DVec2;
 
 use super::progress::Progress;
 use super::{EngineError, Job};
+use crate::candidates::Lists;
 use crate::geometry::{TracePoint, higher, lower};
 use crate::rope::{EndsRecord, Event, EventKind, FreeRope, Side, Status, Sweep, TraceRecord};
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::trace::{End, SettledEnds};
 
 /// What the leg of an end turns about: a vertex, or no vertex but the other end, and where that is.
@@ -24,13 +25,24 @@ pub(super) fn all(model: &Model) -> impl Candidates {
 }
 
 /// The vertices in the box of the triangle of `about` and a leg, perhaps more than once and with some outside: what
-/// there is to try where no list of vertices is made, about an end that moves itself. O(log walls + walls near the box).
+/// there is to try where no list of vertices is made, about an end that moves itself. O(log walls + walls near the
+/// box).
 pub(super) fn near(model: &Model, (_, at): About, [a0, a1]: [DVec2; 2], tried: &mut Vec<u32>) {
     let (low, high) = (lower(lower(at, a0), a1), higher(higher(at, a0), a1));
     let _ = model.index().visit::<()>(low, high, |wall, _| {
         tried.extend(model.scene().walls()[wall as usize]);
         std::ops::ControlFlow::Continue(())
     });
+}
+
+/// The vertices that the pivot sees within reach of a leg, as `lists` have them; those [`near`] about an end, and as
+/// long as there is no list.
+pub(super) fn listed(lists: &Lists, about: About, leg: [DVec2; 2], tried: &mut Vec<u32>) {
+    let squared = leg.map(|a| a.distance_squared(about.1)).into_iter().fold(0.0, f64::max);
+    match about.0.and_then(|vertex| lists.of(Pivot::at_vertex(vertex), squared)) {
+        Some(list) => tried.extend(list.numbers().take(list.within(squared))),
+        None => near(lists.model(), about, leg, tried),
+    }
 }
 
 /// Moves `end` of `rope` straight to `to`, and tells `each` what happens on the way. Returns how many vertices were

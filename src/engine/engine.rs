@@ -34,9 +34,9 @@ pub trait Engine: Send {
     /// [`EngineError::Stopped`] when the job was stopped, and whatever can go wrong with the engine's device.
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError>;
 
-    /// The same for ropes whose ends both move, settled against the scene of the engine's model; where that ties its rope
-    /// is of no matter. An anchor that stays where it is gives the records that [`evaluate`](Self::evaluate) gives where
-    /// the model ties the rope there.
+    /// The same for ropes whose ends both move, settled against the scene of the engine's model; where that ties its
+    /// rope is of no matter. An anchor that stays where it is gives the records that [`evaluate`](Self::evaluate) gives
+    /// where the model ties the rope there.
     ///
     /// # Errors
     ///

@@ -75,7 +75,8 @@ impl Hair {
         if self.goes_with(at, other) { turned } else { -turned }
     }
 
-    /// The same sign where `other` is a hair of the rope's other end, and turned by an infinitely larger angle; never 0.
+    /// The same sign where `other` is a hair of the rope's other end, and turned by an infinitely larger angle; never
+    /// 0.
     pub(super) fn cross_end(self, at: DVec2, other: Hair) -> f64 {
         let side = self.cross(at, other);
         if side != 0.0 {

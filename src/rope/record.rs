@@ -1,8 +1,10 @@
 //! What a trace's evaluation reports.
 
+use std::collections::VecDeque;
+
 use glam::DVec2;
 
-use super::Side;
+use super::{Rope, Side};
 use crate::trace::End;
 
 /// What happened to the rope.
@@ -98,5 +100,28 @@ impl EndsRecord {
     /// Every event with the end at which it happened, in order.
     pub fn events(&self) -> impl Iterator<Item = (&Event, End)> {
         self.record.events.iter().zip(self.ends.iter().copied())
+    }
+
+    /// The rope after a step, when the anchor is at `anchor`: the same contacts on a rope that is tied there.
+    /// `vertices` are the scene's. O(events).
+    ///
+    /// # Panics
+    ///
+    /// If the events are not a rope's: a vertex that is not there, or an unwrap of an empty rope.
+    pub fn rope_after(&self, vertices: &[DVec2], anchor: DVec2, step: usize) -> Rope {
+        let mut contacts = VecDeque::new();
+        for (event, end) in self.events().take_while(|(event, _)| event.step as usize <= step) {
+            match (event.kind, end) {
+                (EventKind::Wrap, End::Free) => contacts.push_back(event),
+                (EventKind::Wrap, End::Anchor) => contacts.push_front(event),
+                (EventKind::Unwrap, end) => {
+                    let gone = if end == End::Free { contacts.pop_back() } else { contacts.pop_front() };
+                    assert_eq!(gone.map(|e| e.vertex), Some(event.vertex), "an unwrap follows its wrap");
+                }
+            }
+        }
+        let mut rope = Rope::new(anchor);
+        contacts.iter().for_each(|e| rope.push(e.vertex, vertices[e.vertex as usize], e.side));
+        rope
     }
 }

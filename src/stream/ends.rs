@@ -65,7 +65,8 @@ impl EndsSource {
         self.reader.size()
     }
 
-    fn next(&mut self, traces: usize) -> Result<Option<Vec<Both>>, StreamError> {
+    /// The next traces.
+    pub(super) fn next(&mut self, traces: usize) -> Result<Option<Vec<Both>>, StreamError> {
         if let Some(ahead) = self.ahead.take() {
             return Ok(Some(ahead));
         }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::DVec2;
 use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
-use tautline::engine::{Cpu, Engine, Funnel, Job, Reference};
-use tautline::rope::{EndsRecord, Side, TraceRecord};
+use tautline::engine::{Cpu, ENGINES, Engine, EngineError, EngineKind, Funnel, Job, LiveEnds, Options, Reference};
+use tautline::rope::{EndsRecord, Side, Status, TraceRecord};
 use tautline::scene::Model;
 use tautline::trace::{End, SettledEnds, SettledTrace, Trace, settle, settle_ends};
 
@@ -183,4 +183,71 @@ fn cpu_gives_the_references_records() {
         let lists = tautline::candidates::Lists::new(far);
         assert_eq!(run(&mut Cpu::with_lists(lists.after(0)), &settled), truth);
     });
+}
+
+/// Traces that cross walls at will come to an end, whatever engine evaluates them, and are marked.
+#[test]
+fn lawless_traces_come_to_an_end() {
+    for kind in KINDS {
+        let mut runner = TestRunner::new(ProptestConfig { cases: 100, failure_persistence: None, ..Default::default() });
+        let recipes = [recipe(kind, true), recipe(kind, true)];
+        let result = runner.run(&recipes, |[first, second]| {
+            let model = first.model();
+            let [mut free, mut anchor] = [first.lawless_trace(&model, 0), second.lawless_trace(&model, 0)];
+            let points = free.points.len().min(anchor.points.len());
+            free.points.truncate(points);
+            anchor.points.truncate(points);
+            let Ok(settled) = settle_ends(&model, &free, &anchor.points) else { return Ok(()) };
+            let truth = run(&mut Reference::new(model.clone()), &settled);
+            assert_eq!(truth.record.status == Status::Violation, settled.violation().is_some());
+            assert_eq!(run(&mut Cpu::new(model.clone()), &settled), truth);
+            let rope = truth.rope_after(model.vertices(), anchor.points[points - 1], points - 1);
+            assert!(rope.contacts().len() >= truth.record.wraps.len());
+            Ok(())
+        });
+        result.unwrap_or_else(|e| panic!("{kind:?}: {e}"));
+    }
+}
+
+#[test]
+fn a_live_rope_has_the_events_of_the_traces() {
+    let compared = std::cell::Cell::new(0);
+    check(&KINDS, false, 100, |case| {
+        let record = run(&mut Reference::new(case.model.clone()), &case.settled(case.free.len()));
+        let mut expected = record.events();
+        let mut rope = LiveEnds::new(case.model.clone()).unwrap();
+        for (k, ends) in case.free.iter().zip(&case.anchor).enumerate() {
+            for (end, &to) in [(End::Free, ends.0), (End::Anchor, ends.1)] {
+                // Of a move that touches a wall it says so.
+                let Ok(events) = rope.advance(end, to) else { return };
+                for found in events {
+                    let (e, at) = expected.next().unwrap();
+                    assert_eq!((e.step as usize, e.kind, e.vertex, e.side), (k, found.kind, found.vertex, found.side));
+                    assert_eq!(at, end);
+                    compared.set(compared.get() + 1);
+                }
+            }
+            let tied = record.rope_after(case.model.vertices(), *ends.1, k);
+            assert_eq!(rope.rope().measure(), tied.measure(*ends.0));
+        }
+        assert_eq!(expected.next(), None);
+        assert_eq!((rope.length(), rope.pull(End::Free)), (record.record.length, record.record.pull));
+    });
+    assert!(compared.get() > 1000, "{}", compared.get());
+}
+
+#[test]
+fn engines_take_two_ends_or_say_that_they_do_not() {
+    let model = Arc::new(Model::new(tautline::example::floor_plan(), None).unwrap());
+    let free = Trace { id: 7, points: vec![model.anchor(); 2] };
+    let settled = settle_ends(&model, &free, &[model.anchor(), model.anchor() + 0.01]).unwrap();
+    let open = |kind: &'static EngineKind| kind.open(model.clone(), None, &Options::default()).unwrap().engine;
+    for kind in ENGINES.into_iter().filter(|kind| !kind.needs_gpu()) {
+        let outcome = open(kind).evaluate_ends(std::slice::from_ref(&settled), &Job::new());
+        match outcome {
+            Ok(records) => assert!(kind.both_ends && records[0].record.length > 0.01),
+            Err(error) => assert!(!kind.both_ends && matches!(error, EngineError::TwoEnds { .. }), "{error}"),
+        }
+    }
+    assert!(ENGINES.iter().all(|kind| !(kind.needs_gpu() && kind.both_ends)));
 }
