@@ -14,6 +14,7 @@ use super::engine::EngineArgs;
 use super::failure::Failure;
 use super::input::{InputArgs, tie};
 use super::progress::{Progress, with_progress};
+use super::steps::StepArgs;
 use super::summary::finish;
 
 /// Where the anchors' paths are.
@@ -65,15 +66,17 @@ pub(crate) struct Given<'a> {
     pub input: &'a InputArgs,
     pub ends: &'a EndsArgs,
     pub engine: &'a EngineArgs,
+    pub every: &'a StepArgs,
+    /// Those without steps.
     pub files: EndsFiles<'a>,
     /// Options that do not go with it, if they are given.
-    pub others: [(&'static str, bool); 3],
+    pub others: [(&'static str, bool); 2],
     pub json: bool,
 }
 
 /// Evaluates ropes whose ends both move.
 pub(crate) fn run(given: &Given<'_>, traces: TraceReader) -> Result<(), Failure> {
-    let Given { input, ends, engine, files, others, json } = given;
+    let Given { input, ends, engine, every, files, others, json } = given;
     ends.refuse_anchor(input)?;
     if let Some((option, _)) = others.iter().find(|(_, is_given)| *is_given) {
         return Err(refused(option));
@@ -84,6 +87,8 @@ pub(crate) fn run(given: &Given<'_>, traces: TraceReader) -> Result<(), Failure>
     // Without traces there are no ropes, and any place will do.
     let anchor = source.start(AHEAD)?.or(scene.anchor()).unwrap_or_default();
     let model = Arc::new(tie(scene, Some(anchor), &input.name(), &input.how_to_tie())?);
+    let centres = if every.steps.is_some() { every.centres(model.scene())? } else { Vec::new() };
+    let files = EndsFiles { steps: every.steps.as_deref().map(|path| (path, &centres[..])), ..*files };
     let (mut engine, on) = engine.open_both_ends(&model)?;
     say!("note: both ends of the ropes move; the anchor told of is where that of the first trace starts");
     let terms = Terms::exact(model.clone());
@@ -97,7 +102,7 @@ pub(crate) fn run(given: &Given<'_>, traces: TraceReader) -> Result<(), Failure>
         }
         EndsStage::Evaluated { settled, records } => account.add_ends(settled, records),
     };
-    let evaluate = || evaluate_ends(source, &model, &mut *engine, *files, policy, &job, watch);
+    let evaluate = || evaluate_ends(source, &model, &mut *engine, files, policy, &job, watch);
     let outcome = with_progress(&progress, &job, evaluate);
     let times = outcome.map_err(|error| violations.failure(error))?;
     violations.finish();

@@ -97,13 +97,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 impl Args {
     /// The same where both ends of ropes move.
     fn of_ends(&self) -> Given<'_> {
-        let files = EndsFiles { out: self.out.as_deref(), events: self.events.as_deref() };
-        let others = [
-            ("--steps", self.every.steps.is_some()),
-            ("--stride", self.trade.stride.is_some()),
-            ("--simplify", self.trade.simplify.is_some()),
-        ];
-        Given { input: &self.input, ends: &self.ends, engine: &self.engine, files, others, json: self.json }
+        let files = EndsFiles { out: self.out.as_deref(), events: self.events.as_deref(), steps: None };
+        let others = [("--stride", self.trade.stride.is_some()), ("--simplify", self.trade.simplify.is_some())];
+        let Args { input, ends, engine, every, json, .. } = self;
+        Given { input, ends, engine, every, files, others, json: *json }
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use glam::DVec2;
 
 use super::stack::{is_straight, pull};
-use super::{EventKind, Leg, Side, Strand, Sweep};
+use super::{Event, EventKind, Leg, Side, Strand, Sweep};
 use crate::geometry::{Stand, TracePoint};
 use crate::trace::End;
 
@@ -104,6 +104,31 @@ impl FreeRope {
         match end {
             End::Free => self.free = leg.a1,
             End::Anchor => self.anchor = leg.a1,
+        }
+    }
+
+    /// Makes an event of `end` happen, whose vertex stands at `at`.
+    ///
+    /// # Panics
+    ///
+    /// If it is an unwrap of what is not the contact next to that end.
+    pub(super) fn play(&mut self, end: End, event: &Event, at: DVec2) {
+        let mut strand = Seen { rope: self, end };
+        match event.kind {
+            EventKind::Wrap => strand.push(event.vertex, at, seen(end, event.side)),
+            EventKind::Unwrap => {
+                let gone = strand.pop().map(|(vertex, _)| vertex);
+                assert_eq!(gone, Some(event.vertex), "an unwrap follows its wrap");
+            }
+        }
+    }
+
+    /// Puts `end` there, whatever lies between.
+    pub(super) fn stand(&mut self, end: End, at: DVec2) {
+        let at = TracePoint::from(at).off_all_lines();
+        match end {
+            End::Free => self.free = at,
+            End::Anchor => self.anchor = at,
         }
     }
 

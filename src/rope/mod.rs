@@ -1,6 +1,8 @@
 //! The rope: the stack of contacts, the exact update, and the record of what happened. Knows nothing of files, threads
 //! or GPUs.
 
+mod ends_record;
+mod ends_steps;
 mod free_rope;
 mod moment;
 mod record;
@@ -12,9 +14,11 @@ mod steps;
 mod strand;
 mod update;
 
+pub use ends_record::EndsRecord;
+pub use ends_steps::EndsSteps;
 pub use free_rope::{FreeContact, FreeRope};
 pub use moment::Moment;
-pub use record::{EndsRecord, Event, EventKind, Status, TraceRecord};
+pub use record::{Event, EventKind, Status, TraceRecord};
 pub(crate) use replay::{Lasting, lasting};
 pub use replay::{moments, replay};
 pub use rounds::Rounds;

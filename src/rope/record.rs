@@ -1,11 +1,8 @@
 //! What a trace's evaluation reports.
 
-use std::collections::VecDeque;
-
 use glam::DVec2;
 
-use super::{Rope, Side};
-use crate::trace::End;
+use super::Side;
 
 /// What happened to the rope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -84,44 +81,4 @@ pub struct TraceRecord {
     pub pull: Option<DVec2>,
     /// Every push and pop, in order.
     pub events: Vec<Event>,
-}
-
-/// The result of one trace of a rope whose ends both move.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EndsRecord {
-    /// What is said of every trace: lengths and depths after every step of both ends, the rope from where the anchor is
-    /// at last, the pull of the free end, and the events. These come and go at either end.
-    pub record: TraceRecord,
-    /// At which end each of the events happened.
-    pub ends: Vec<End>,
-}
-
-impl EndsRecord {
-    /// Every event with the end at which it happened, in order.
-    pub fn events(&self) -> impl Iterator<Item = (&Event, End)> {
-        self.record.events.iter().zip(self.ends.iter().copied())
-    }
-
-    /// The rope after a step, when the anchor is at `anchor`: the same contacts on a rope that is tied there.
-    /// `vertices` are the scene's. O(events).
-    ///
-    /// # Panics
-    ///
-    /// If the events are not a rope's: a vertex that is not there, or an unwrap of an empty rope.
-    pub fn rope_after(&self, vertices: &[DVec2], anchor: DVec2, step: usize) -> Rope {
-        let mut contacts = VecDeque::new();
-        for (event, end) in self.events().take_while(|(event, _)| event.step as usize <= step) {
-            match (event.kind, end) {
-                (EventKind::Wrap, End::Free) => contacts.push_back(event),
-                (EventKind::Wrap, End::Anchor) => contacts.push_front(event),
-                (EventKind::Unwrap, end) => {
-                    let gone = if end == End::Free { contacts.pop_back() } else { contacts.pop_front() };
-                    assert_eq!(gone.map(|e| e.vertex), Some(event.vertex), "an unwrap follows its wrap");
-                }
-            }
-        }
-        let mut rope = Rope::new(anchor);
-        contacts.iter().for_each(|e| rope.push(e.vertex, vertices[e.vertex as usize], e.side));
-        rope
-    }
 }

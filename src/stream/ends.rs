@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glam::DVec2;
@@ -9,10 +10,10 @@ use rayon::prelude::*;
 
 use super::{OnViolation, StreamError, Times};
 use crate::engine::{Engine, Job};
-use crate::output::{EventWriter, ResultWriter, WholeFile, commit};
+use crate::output::{EventWriter, ResultWriter, StepWriter, WholeFile, commit};
 use crate::read_error::ReadError;
 use crate::rope::{EndsRecord, TraceRecord};
-use crate::scene::{Model, Scene};
+use crate::scene::{Centre, Model, Scene};
 use crate::trace::{End, SettledEnds, Trace, TraceReader, read_traces, settle_ends};
 
 /// How many points the free ends of a batch have together at most.
@@ -90,6 +91,8 @@ pub struct EndsFiles<'a> {
     pub out: Option<&'a Path>,
     /// One row a wrap or unwrap, with the end at which it happened.
     pub events: Option<&'a Path>,
+    /// One row a step, and about what turns of the free end are counted.
+    pub steps: Option<(&'a Path, &'a [Centre])>,
 }
 
 /// How far such a stream is: said twice of each batch.
@@ -119,7 +122,7 @@ pub enum EndsStage<'a> {
 /// the run; [`EngineError::Stopped`](crate::engine::EngineError::Stopped) when the job was stopped.
 pub fn evaluate_ends(
     mut source: EndsSource,
-    model: &Model,
+    model: &Arc<Model>,
     engine: &mut dyn Engine,
     files: EndsFiles<'_>,
     on_violation: OnViolation,
@@ -127,7 +130,7 @@ pub fn evaluate_ends(
     mut watch: impl FnMut(EndsStage<'_>),
 ) -> Result<Times, StreamError> {
     let mut times = Times::default();
-    let mut writers = Writers::create(files, model.scene())?;
+    let mut writers = Writers::create(files, model)?;
     loop {
         let start = Instant::now();
         let Some(traces) = source.next(engine.batch())? else { break };
@@ -145,7 +148,7 @@ pub fn evaluate_ends(
         let records = engine.evaluate_ends(&settled, job)?;
         times.evaluated += start.elapsed();
         watch(EndsStage::Evaluated { settled: &settled, records: &records });
-        times.written += writers.write(model.scene(), records)?;
+        times.written += writers.write(model.scene(), &settled, records)?;
     }
     times.written += writers.finish()?;
     Ok(times)
@@ -155,17 +158,28 @@ pub fn evaluate_ends(
 struct Writers {
     out: Option<ResultWriter>,
     events: Option<EventWriter>,
+    steps: Option<StepWriter>,
 }
 
 impl Writers {
-    fn create(files: EndsFiles<'_>, scene: &Scene) -> Result<Self, StreamError> {
+    fn create(files: EndsFiles<'_>, model: &Arc<Model>) -> Result<Self, StreamError> {
+        let scene = model.scene();
         let out = files.out.map(|path| ResultWriter::create(path, scene)).transpose()?;
         let events = files.events.map(|path| EventWriter::of_ends(path, scene)).transpose()?;
-        Ok(Writers { out, events })
+        let steps = files.steps.map(|(path, centres)| StepWriter::of_ends(path, model, centres)).transpose()?;
+        Ok(Writers { out, events, steps })
     }
 
-    fn write(&mut self, scene: &Scene, records: Vec<EndsRecord>) -> Result<Duration, StreamError> {
+    fn write(
+        &mut self,
+        scene: &Scene,
+        settled: &[SettledEnds],
+        records: Vec<EndsRecord>,
+    ) -> Result<Duration, StreamError> {
         let start = Instant::now();
+        if let Some(steps) = &mut self.steps {
+            steps.write_ends(settled, &records)?;
+        }
         if let Some(events) = &mut self.events {
             events.write_ends(scene, &records)?;
         }
@@ -179,10 +193,11 @@ impl Writers {
     /// Gives all files their names.
     fn finish(self) -> Result<Duration, StreamError> {
         let start = Instant::now();
-        let files =
-            [self.out.map(ResultWriter::complete).transpose()?, self.events.map(EventWriter::complete).transpose()?];
+        let out = self.out.map(ResultWriter::complete).transpose()?;
+        let events = self.events.map(EventWriter::complete).transpose()?;
+        let steps = self.steps.map(StepWriter::complete).transpose()?;
         let _together = commit();
-        files.into_iter().flatten().try_for_each(WholeFile::finish)?;
+        [out, events, steps].into_iter().flatten().try_for_each(WholeFile::finish)?;
         Ok(start.elapsed())
     }
 }

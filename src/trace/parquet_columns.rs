@@ -25,11 +25,15 @@ pub(super) fn moves_anchor(schema: &Schema) -> bool {
 /// A fault with its row in the batch.
 type InRow = (usize, String);
 
+/// The columns that are read.
+fn read(moves_anchor: bool) -> impl Iterator<Item = &'static str> {
+    COLUMNS.into_iter().filter(move |name| moves_anchor || !ANCHOR.contains(name))
+}
+
 /// The numbers of the columns in a schema, whose types must fit.
 pub(super) fn find(schema: &Schema) -> Result<Vec<usize>, String> {
     let mut columns = Vec::new();
-    let tied = if moves_anchor(schema) { &[][..] } else { &ANCHOR };
-    for name in COLUMNS.into_iter().filter(|name| !tied.contains(name)) {
+    for name in read(moves_anchor(schema)) {
         let mut found = (0..schema.fields().len()).filter(|&i| schema.field(i).name() == name);
         let number = match (found.next(), found.next()) {
             (Some(number), None) => number,
@@ -71,7 +75,7 @@ fn wrong_type(name: &str, kind: &DataType, whole: bool) -> String {
 }
 
 /// Refuses a compression that is not read here, before it looks like damage.
-pub(super) fn check_compression(metadata: &ParquetMetaData) -> Result<(), String> {
+pub(super) fn check_compression(metadata: &ParquetMetaData, moves_anchor: bool) -> Result<(), String> {
     for column in metadata.row_groups().iter().flat_map(|group| group.columns()) {
         let name = column.column_path().string();
         let by = match column.compression() {
@@ -79,7 +83,7 @@ pub(super) fn check_compression(metadata: &ParquetMetaData) -> Result<(), String
             Compression::LZO => "LZO",
             _ => continue,
         };
-        if COLUMNS.contains(&name.as_str()) {
+        if read(moves_anchor).any(|column| column == name) {
             let what = "which is not read here; write the file with zstd or snappy compression";
             return Err(format!("column {name} is compressed with {by}, {what}"));
         }

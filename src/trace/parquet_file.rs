@@ -34,8 +34,8 @@ impl ParquetRows {
             let builder = ParquetRecordBatchReaderBuilder::try_new_with_options(file, options)
                 .map_err(|e| damaged(Place::default(), e))?;
             let columns = find(builder.schema()).map_err(|what| Fault::new(Place::default(), what))?;
-            check_compression(builder.metadata()).map_err(|what| Fault::new(Place::default(), what))?;
             let moves_anchor = moves_anchor(builder.schema());
+            check_compression(builder.metadata(), moves_anchor).map_err(|what| Fault::new(Place::default(), what))?;
             let mask = ProjectionMask::roots(builder.parquet_schema(), columns);
             let rows = builder.metadata().file_metadata().num_rows().try_into().unwrap_or(0);
             let builder = builder.with_projection(mask).with_batch_size(BATCH);

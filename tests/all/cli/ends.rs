@@ -4,6 +4,7 @@ use std::fs::File;
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
+use arrow_array::types::Float64Type;
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, UInt64Array};
 use parquet::arrow::ArrowWriter;
 
@@ -58,6 +59,26 @@ fn both_ends_are_taken_from_columns_or_from_a_file_of_their_own() {
         folder.done(&format!("eval --scene s.geojson --traces {given} --out o.csv --events f.csv"));
         assert_eq!((folder.text("o.csv"), folder.text("f.csv")), (rows.clone(), events.to_owned()), "{given}");
     }
+    let steps = "trace,step,x,y,bx,by,length,contacts,turns,pull_x,pull_y\n\
+        2,0,0.0,-8.0,0.0,0.0,8.0,0,0,0.0,1.0\n\
+        2,1,4.5,-8.0,0.0,0.0,9.17877987534291,0,0,-0.49026123963255896,0.8715755371245493\n\
+        2,2,4.5,-2.0,0.0,0.0,7.5,1,1,-0.6,-0.8\n\
+        2,3,4.5,-2.0,0.0,-8.0,7.5,1,0,-0.6,-0.8\n\
+        2,4,4.5,-2.0,4.5,-8.0,6.0,0,0,0.0,-1.0\n\
+        3,0,0.0,12.0,0.0,0.0,12.0,0,0,0.0,-1.0\n\
+        3,1,5.0,12.0,0.0,0.0,13.0,0,0,-0.38461538461538464,-0.9230769230769231\n\
+        3,2,5.0,4.0,0.0,0.0,7.0,1,1,-1.0,0.0\n";
+    folder.done("eval --scene s.geojson --traces both.csv --steps s.csv");
+    assert_eq!(folder.text("s.csv"), steps);
+    folder.done("eval --scene s.geojson --traces both.csv --steps s.jsonl --about 1");
+    let last = r#"{"trace":3,"step":2,"x":5.0,"y":4.0,"bx":0.0,"by":0.0,"length":7.0,"contacts":1,"turns":1,"pull_x":-1.0,"pull_y":0.0,"winding_vertex 1":0}"#;
+    assert_eq!(folder.text("s.jsonl").lines().last(), Some(last));
+    folder.done("eval --scene s.geojson --traces both.csv --steps s.parquet");
+    let batch = super::steps::read(&folder, "s.parquet").remove(0);
+    let names: Vec<_> = batch.schema().fields().iter().map(|field| field.name().clone()).collect();
+    assert_eq!(names.join(","), steps.lines().next().unwrap());
+    let by = batch.column_by_name("by").unwrap().as_primitive::<Float64Type>().values().to_vec();
+    assert_eq!(by, [0.0, 0.0, 0.0, -8.0, -8.0, 0.0, 0.0, 0.0]);
     folder.done("eval --scene s.geojson --traces both.csv --events e.jsonl");
     let first = r#"{"trace":2,"step":2,"kind":"wrap","vertex":1,"x":3.0,"y":-4.0,"side":"left","end":"free"}"#;
     assert_eq!(folder.text("e.jsonl").lines().next(), Some(first));
@@ -100,8 +121,7 @@ fn what_does_not_go_with_two_ends_is_refused() {
         (format!("{both} --engine gpu"), "the engine gpu does not take ropes whose anchor moves"),
         (format!("{both} --engine funnel"), "the engines cpu and reference do"),
         (format!("{both} --precision fast"), "the engine gpu does not take"),
-        (format!("{both} --steps s.csv"), "--steps is for ropes that are tied: leave it out"),
-        (format!("{both} --stride 2"), "--stride is for ropes that are tied"),
+        (format!("{both} --stride 2"), "--stride is for ropes that are tied: leave it out"),
         (format!("{both} --simplify 1"), "--simplify is for ropes that are tied"),
         (format!("{both} --anchor 1,1"), "--anchor is for ropes that are tied"),
         (format!("{both} --anchor-trace anchor.csv"), "leave --anchor-trace or these columns out"),
