@@ -92,9 +92,9 @@ fn draw_ends(args: &Args, traces: TraceReader, target: &Target) -> Result<(), Fa
     }
     let found = args.ends.source(traces)?.pick(&args.wanted).map_err(|error| not_found(args, error))?;
     let scene = args.input.walls()?;
-    let start = found.first().and_then(|(_, anchor)| anchor.first().copied()).or(scene.anchor()).unwrap_or_default();
+    let start = found.first().and_then(|both| both.anchor.first().copied()).or(scene.anchor()).unwrap_or_default();
     let model = Arc::new(tie(scene, Some(start), &args.input.name(), &args.input.how_to_tie())?);
-    let settled = found.iter().map(|(free, anchor)| settle_ends(&model, free, anchor));
+    let settled = found.iter().map(|both| settle_ends(&model, &both.free, &both.anchor));
     let settled: Vec<SettledEnds> = settled.collect::<Result<_, _>>().map_err(StreamError::from)?;
     args.input.violations().take_ends(&settled)?;
     let records = Cpu::new(model.clone()).evaluate_ends(&settled, &Job::new())?;

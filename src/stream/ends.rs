@@ -14,13 +14,10 @@ use crate::output::{EventWriter, ResultWriter, StepWriter, WholeFile, commit};
 use crate::read_error::ReadError;
 use crate::rope::{EndsRecord, TraceRecord};
 use crate::scene::{Centre, Model, Scene};
-use crate::trace::{End, SettledEnds, Trace, TraceReader, read_traces, settle_ends};
+use crate::trace::{End, EndsTrace, SettledEnds, Trace, TraceReader, read_traces, settle_ends};
 
 /// How many points the free ends of a batch have together at most.
 const POINTS: usize = 1 << 21;
-
-/// A trace, and the points of its anchor.
-type Both = (Trace, Vec<DVec2>);
 
 /// Where the paths of both ends come from.
 pub struct EndsSource {
@@ -28,7 +25,7 @@ pub struct EndsSource {
     /// The anchors' paths by trace, and their file, where the traces do not have them in their rows.
     anchors: Option<(PathBuf, BTreeMap<u64, Vec<DVec2>>)>,
     /// What has been read ahead.
-    ahead: Option<Vec<Both>>,
+    ahead: Option<Vec<EndsTrace>>,
 }
 
 impl EndsSource {
@@ -56,7 +53,7 @@ impl EndsSource {
     /// Traces that cannot be read, and one without a path for its anchor.
     pub fn start(&mut self, traces: usize) -> Result<Option<DVec2>, StreamError> {
         let first = self.next(traces)?;
-        let start = first.as_ref().and_then(|traces| traces.first()?.1.first().copied());
+        let start = first.as_ref().and_then(|traces| traces.first()?.anchor.first().copied());
         self.ahead = first;
         Ok(start)
     }
@@ -67,7 +64,7 @@ impl EndsSource {
     }
 
     /// The next traces.
-    pub(super) fn next(&mut self, traces: usize) -> Result<Option<Vec<Both>>, StreamError> {
+    pub(super) fn next(&mut self, traces: usize) -> Result<Option<Vec<EndsTrace>>, StreamError> {
         if let Some(ahead) = self.ahead.take() {
             return Ok(Some(ahead));
         }
@@ -76,7 +73,7 @@ impl EndsSource {
         let both = |trace: Trace| {
             let one = anchors.values().next().filter(|_| anchors.len() == 1);
             match one.or_else(|| anchors.get(&trace.id)) {
-                Some(anchor) => Ok((trace, anchor.clone())),
+                Some(anchor) => Ok(EndsTrace { free: trace, anchor: anchor.clone() }),
                 None => Err(StreamError::NoAnchor { path: path.clone(), trace: trace.id }),
             }
         };
@@ -134,7 +131,7 @@ pub fn evaluate_ends(
     loop {
         let start = Instant::now();
         let Some(traces) = source.next(engine.batch())? else { break };
-        let settled = traces.par_iter().map(|(free, anchor)| settle_ends(model, free, anchor));
+        let settled = traces.par_iter().map(|trace| settle_ends(model, &trace.free, &trace.anchor));
         let settled: Vec<SettledEnds> = settled.collect::<Result<_, _>>()?;
         if let (OnViolation::Error, Some((end, first))) = (on_violation, settled.iter().find_map(|t| t.violation())) {
             return Err(match end {

@@ -1,12 +1,10 @@
 //! Some traces of a source, by their numbers.
 
-use glam::DVec2;
-
 use super::{EndsSource, Source, StreamError};
 use crate::example::some_walks;
 use crate::read_error::ReadError;
 use crate::scene::Model;
-use crate::trace::Trace;
+use crate::trace::{EndsTrace, Trace};
 
 /// How many traces, and points of them, are read at a time.
 const TRACES: usize = 8192;
@@ -79,8 +77,8 @@ impl EndsSource {
     /// # Errors
     ///
     /// Files that cannot be read, and a number that no trace has.
-    pub fn pick(mut self, wanted: &[u64]) -> Result<Vec<(Trace, Vec<DVec2>)>, PickError> {
-        find(|| self.next(TRACES), |both| both.0.id, &each_once(wanted))
+    pub fn pick(mut self, wanted: &[u64]) -> Result<Vec<EndsTrace>, PickError> {
+        find(|| self.next(TRACES), |both| both.free.id, &each_once(wanted))
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::Trace;
+use super::{EndsTrace, Trace};
 use crate::geometry::{check_point, check_points};
 
 /// The most points for which room is made ahead in a trace whose end is not known yet.
@@ -141,11 +141,12 @@ impl Gatherer {
     }
 
     /// The same with the points of each trace's anchor, of rows that say where that is.
-    pub(super) fn take_both(&mut self, traces: usize, points: usize, ended: bool) -> Option<Vec<(Trace, Vec<DVec2>)>> {
+    pub(super) fn take_both(&mut self, traces: usize, points: usize, ended: bool) -> Option<Vec<EndsTrace>> {
         // As many rows in the one as in the other, so as many traces.
         let free = self.take(traces, points, ended)?;
         let anchors = self.anchors.as_mut()?.take(traces, points, ended)?;
-        Some(free.into_iter().zip(anchors).map(|(free, anchor)| (free, anchor.points)).collect())
+        let both = |(free, anchor): (Trace, Trace)| EndsTrace { free, anchor: anchor.points };
+        Some(free.into_iter().zip(anchors).map(both).collect())
     }
 }
 

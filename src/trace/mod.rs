@@ -21,7 +21,7 @@ mod slide;
 
 pub use end::End;
 pub use gather::traces_of_rows;
-pub use given::Trace;
+pub use given::{EndsTrace, Trace};
 pub use read::{TraceReader, read_traces};
 pub(crate) use settle::{first_violation, settle_clear};
 pub use settle::{settle, settle_owned};

@@ -3,12 +3,10 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use glam::DVec2;
-
-use super::Trace;
 use super::csv_file::CsvRows;
 use super::gather::Gatherer;
 use super::parquet_file::ParquetRows;
+use super::{EndsTrace, Trace};
 use crate::read_error::{Fault, Place, ReadError, extension};
 use crate::read_file::{open, special};
 
@@ -117,7 +115,7 @@ impl TraceReader {
     /// # Errors
     ///
     /// Those of [`next_batch`](Self::next_batch).
-    pub fn next_ends(&mut self, traces: usize, points: usize) -> Result<Option<Vec<(Trace, Vec<DVec2>)>>, ReadError> {
+    pub fn next_ends(&mut self, traces: usize, points: usize) -> Result<Option<Vec<EndsTrace>>, ReadError> {
         self.fill(traces, points)?;
         Ok(self.gatherer.take_both(traces, points, self.ended))
     }

@@ -77,7 +77,7 @@ fn columns_of_an_anchor_are_read_beside_the_others() {
         while let Some(batch) = reader.next_ends(1, 9).unwrap() {
             assert_eq!(batch.len(), 1);
             let points = |points: &[glam::DVec2]| points.iter().map(|p| p.to_array()).collect::<Vec<_>>();
-            read.extend(batch.into_iter().map(|(free, anchor)| (free.id, points(&free.points), points(&anchor))));
+            read.extend(batch.into_iter().map(|both| (both.free.id, points(&both.free.points), points(&both.anchor))));
         }
         let first = (0, vec![[1.0, 2.0]; 2], vec![[3.0, 4.0], [5.0, 6.0]]);
         assert_eq!(read, [first, (4, vec![[7.0, 8.0]], vec![[0.0, 1e3]])], "{text}");

@@ -29,9 +29,9 @@ fn csv(columns: &str, row: impl Fn(&(u64, [f64; 4])) -> String) -> String {
 
 fn folder() -> Folder {
     let folder = Folder::hand_made();
-    folder.write("both.csv", &csv("trace,x,y,bx,by", |(id, [x, y, bx, by])| format!("{id},{x},{y},{bx},{by}")));
-    folder.write("free.csv", &csv("trace,x,y", |(id, [x, y, ..])| format!("{id},{x},{y}")));
-    folder.write("anchor.csv", &csv("trace,x,y", |(id, [.., x, y])| format!("{id},{x},{y}")));
+    folder.write("both.csv", csv("trace,x,y,bx,by", |(id, [x, y, bx, by])| format!("{id},{x},{y},{bx},{by}")));
+    folder.write("free.csv", csv("trace,x,y", |(id, [x, y, ..])| format!("{id},{x},{y}")));
+    folder.write("anchor.csv", csv("trace,x,y", |(id, [.., x, y])| format!("{id},{x},{y}")));
     let column = |i: usize| -> ArrayRef { Arc::new(Float64Array::from_iter_values(ROWS.iter().map(|row| row.1[i]))) };
     let ids: ArrayRef = Arc::new(UInt64Array::from_iter_values(ROWS.iter().map(|row| row.0)));
     let columns = [("by", column(3)), ("trace", ids), ("x", column(0)), ("bx", column(2)), ("y", column(1))];
@@ -99,7 +99,7 @@ fn an_anchor_that_stays_gives_the_bytes_of_a_fixed_one() {
         .map(|line| line.to_owned() + if line.starts_with('t') { ",bx,by\n" } else { ",0,0\n" })
         .collect();
     folder.write("b.csv", &both);
-    folder.write("stays.csv", &both.replace(",0,0\n", ",0,0,extra\n").replace(",bx,by\n", ",bx,other,extra\n"));
+    folder.write("stays.csv", both.replace(",0,0\n", ",0,0,extra\n").replace(",bx,by\n", ",bx,other,extra\n"));
     for format in ["csv", "jsonl", "parquet"] {
         folder.done(&format!("eval --scene s.geojson --traces t.csv --out o.{format} --events te.csv"));
         folder.done(&format!("eval --scene s.geojson --traces b.csv --out p.{format} --events be.csv"));
