@@ -18,24 +18,24 @@ pub trait Resting: Copy {
 
     /// For `p` and `q` on a line with this point: whether the way from here over `p` to `q` goes on
     /// [forwards](forwards()).
-    #[inline]
+    #[inline(always)]
     fn forwards(self, p: DVec2, q: DVec2) -> bool {
         forwards(self.at(), p, q)
     }
 }
 
 impl Resting for DVec2 {
-    #[inline]
+    #[inline(always)]
     fn at(self) -> DVec2 {
         self
     }
 
-    #[inline]
+    #[inline(always)]
     fn orient(self, p: DVec2, q: DVec2) -> f64 {
         orient(self, p, q)
     }
 
-    #[inline]
+    #[inline(always)]
     fn left_of(self, p: DVec2, a: TracePoint) -> bool {
         left_of(self, p, a)
     }

@@ -29,27 +29,27 @@ pub trait Strand {
 impl Strand for Rope {
     type Pivot = DVec2;
 
-    #[inline]
+    #[inline(always)]
     fn pivot(&self) -> DVec2 {
         Rope::pivot(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn prior(&self) -> DVec2 {
         Rope::prior(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn side(&self) -> Option<Side> {
         self.contacts().last().map(|contact| contact.side)
     }
 
-    #[inline]
+    #[inline(always)]
     fn push(&mut self, vertex: u32, at: DVec2, side: Side) {
         Rope::push(self, vertex, at, side);
     }
 
-    #[inline]
+    #[inline(always)]
     fn pop(&mut self) -> Option<(u32, Side)> {
         Rope::pop(self).map(|contact| (contact.vertex, contact.side))
     }

@@ -8,17 +8,16 @@ use super::csv_lines::{LINE_MAX, LINE_TOO_LONG, first_line};
 use super::gather::{ANCHOR, Gatherer, STEP};
 use crate::number::{NumberFault, VANISHES};
 
-/// The columns; those from the fourth on may be missing.
-const COLUMNS: [&str; 6] = ["trace", "x", "y", STEP, ANCHOR[0], ANCHOR[1]];
-
-/// How many of them there are where the anchor does not move.
-const TIED: usize = 4;
+/// The columns; the last may be missing.
+const COLUMNS: [&str; 4] = ["trace", "x", "y", STEP];
 
 /// What the header says.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Header {
-    /// The fields in which trace, x, y, step and where the anchor is stand; beyond all of them where there is none.
-    fields: [usize; COLUMNS.len()],
+    /// The fields in which trace, x, y and step stand; the last is beyond all of them where there are no steps.
+    fields: [usize; 4],
+    /// Those in which it stands where the anchor is, if it moves.
+    anchor: Option<[usize; 2]>,
     /// How many fields each row has.
     width: usize,
 }
@@ -51,11 +50,11 @@ impl Header {
     /// Finds the columns among the fields of the first row.
     pub(super) fn new<'a>(fields: impl Iterator<Item = &'a [u8]>) -> Result<Self, String> {
         let found: Vec<_> = fields.map(|name| String::from_utf8_lossy(name.trim_ascii())).collect();
-        let mut fields = [found.len(); COLUMNS.len()];
+        let (mut fields, mut anchor) = ([found.len(); 4], [found.len(); 2]);
         // Either alone is some other column.
         let moves = ANCHOR.iter().all(|column| found.iter().any(|name| name == column));
-        let columns = if moves { COLUMNS.len() } else { TIED };
-        for (field, column) in fields.iter_mut().zip(COLUMNS).take(columns) {
+        let columns = COLUMNS.into_iter().chain(ANCHOR.into_iter().filter(|_| moves));
+        for (field, column) in fields.iter_mut().chain(&mut anchor).zip(columns) {
             let mut at = (0..found.len()).filter(|&i| found[i] == column);
             *field = match (at.next(), at.next()) {
                 (Some(i), None) => i,
@@ -68,28 +67,30 @@ impl Header {
                 }
             };
         }
-        Ok(Header { fields, width: found.len() })
+        Ok(Header { fields, anchor: moves.then_some(anchor), width: found.len() })
     }
 
     /// Whether rows say where the anchor is.
     pub(super) fn moves_anchor(&self) -> bool {
-        self.fields[TIED] < self.width
+        self.anchor.is_some()
     }
 
     /// The numbers in one row's fields. Where these are not UTF-8, they come with replacement characters, which are no
     /// part of a number.
     pub(super) fn row<T: AsRef<str> + Default>(&self, fields: impl Iterator<Item = T>) -> Result<Row, String> {
-        let mut texts: [T; COLUMNS.len()] = Default::default();
-        let columns = &self.fields[..if self.moves_anchor() { COLUMNS.len() } else { TIED }];
+        let (mut texts, mut anchors): ([T; 4], [T; 2]) = Default::default();
         let mut width = 0;
         for field in fields {
-            if let Some(column) = columns.iter().position(|&number| number == width) {
+            let is_here = |&number: &usize| number == width;
+            if let Some(column) = self.fields.iter().position(is_here) {
                 texts[column] = field;
+            } else if let Some(column) = self.anchor.and_then(|anchor| anchor.iter().position(is_here)) {
+                anchors[column] = field;
             }
             width += 1;
         }
         if width != self.width {
-            let semicolon = texts.iter().any(|text| text.as_ref().contains(';'));
+            let semicolon = texts.iter().chain(&anchors).any(|text| text.as_ref().contains(';'));
             let why = match width > self.width {
                 true => "; a decimal comma makes two fields of a number, so write 1.5, not 1,5",
                 false if semicolon => "; the fields are separated by semicolons here: write commas, and 1.5, not 1,5",
@@ -98,11 +99,12 @@ impl Header {
             let fields = if width == 1 { "field" } else { "fields" };
             return Err(format!("{width} {fields}; the header has {}{why}", self.width));
         }
-        let [trace, x, y, step, bx, by] = texts;
+        let [trace, x, y, step] = texts;
         let whole = |text, column| number(text, column, "a whole number from 0", |t| t.parse().ok());
         let point = |x: &T, y: &T, [in_x, in_y]: [&str; 2]| {
             Ok::<_, String>(DVec2::new(coordinate(x.as_ref(), in_x)?, coordinate(y.as_ref(), in_y)?))
         };
+        let [bx, by] = anchors;
         Ok(Row {
             trace: whole(trace.as_ref(), "trace")?,
             point: point(&x, &y, ["x", "y"])?,

@@ -143,8 +143,8 @@ impl Gatherer {
     /// The same with the points of each trace's anchor, of rows that say where that is.
     pub(super) fn take_both(&mut self, traces: usize, points: usize, ended: bool) -> Option<Vec<EndsTrace>> {
         // As many rows in the one as in the other, so as many traces.
-        let free = self.take(traces, points, ended)?;
         let anchors = self.anchors.as_mut()?.take(traces, points, ended)?;
+        let free = self.take(traces, points, ended)?;
         let both = |(free, anchor): (Trace, Trace)| EndsTrace { free, anchor: anchor.points };
         Some(free.into_iter().zip(anchors).map(both).collect())
     }
