@@ -10,6 +10,9 @@ use crate::rope::{EndsRecord, Event, EventKind, FreeRope, Side, Status, Sweep, T
 use crate::scene::{Model, Pivot};
 use crate::trace::{End, SettledEnds};
 
+/// After how many steps of a trace the job is told of them, so that the threads do not fight for its counter.
+const TELL: usize = 1 << 12;
+
 /// What the leg of an end turns about: a vertex, or no vertex but the other end, and where that is.
 pub(super) type About = (Option<u32>, DVec2);
 
@@ -104,15 +107,21 @@ fn tied(
     let model = model.tied(trace.start()).expect("the start of a settled trace is sound");
     let (path, mut progress, mut tried) = (trace.path(End::Free), Progress::new(), Vec::new());
     progress.start(&model, path);
+    let (mut told, mut tests) = (0, 0);
     while !progress.is_done(path) {
         job.go_on()?;
-        let (before, at) = (path.step(progress.at), progress.at);
+        let at = progress.at;
         tried.clear();
         let pivot = progress.rope.contacts().last().map(|contact| contact.vertex);
         candidates((pivot, progress.rope.pivot()), [path.points()[at], path.points()[at + 1]], &mut tried);
         progress.next(&model, path, tried.iter().copied());
-        job.count_tests(tried.len() as u64);
-        job.count(path.step(progress.at) - before);
+        tests += tried.len();
+        let step = path.step(progress.at);
+        if step - told >= TELL || progress.is_done(path) {
+            job.count(step - told);
+            job.count_tests(tests as u64);
+            (told, tests) = (step, 0);
+        }
     }
     let record = progress.record(path);
     let ends = vec![End::Free; record.events.len()];
@@ -130,9 +139,9 @@ fn free(
     let (mut events, mut ends) = (Vec::new(), Vec::new());
     let (mut max_length, mut max_depth) = (0f64, 0);
     let steps = trace.steps();
+    let (mut told, mut tests) = (0, 0);
     for step in 0..=steps {
         job.go_on()?;
-        let mut tests = 0;
         for (end, at) in [End::Free, End::Anchor].into_iter().zip(&mut at) {
             let path = trace.path(end);
             while *at + 1 < path.points().len() && path.step(*at + 1) <= step {
@@ -146,8 +155,11 @@ fn free(
         }
         let (length, depth) = rope.measure();
         (max_length, max_depth) = (max_length.max(length), max_depth.max(depth));
-        job.count(usize::from(step > 0));
-        job.count_tests(tests as u64);
+        if step % TELL == 0 || step == steps {
+            job.count(step - told);
+            job.count_tests(tests as u64);
+            (told, tests) = (step, 0);
+        }
     }
     let (length, depth) = rope.measure();
     let record = TraceRecord {

@@ -27,9 +27,9 @@ use crate::trace::End;
 /// let mut rope = LiveEnds::new(model.into())?;
 /// rope.advance(End::Free, [2.0, -1.0].into())?;
 /// assert_eq!(rope.advance(End::Free, [2.0, 1.0].into())?.len(), 1);
-/// // The anchor follows round the wall's end, and the rope is free again.
-/// assert!(rope.advance(End::Anchor, [1.5, -1.0].into())?.is_empty());
-/// assert_eq!(rope.advance(End::Anchor, [3.0, 1.0].into())?.len(), 1);
+/// // The anchor follows, the rope is free again, and the anchor goes round the wall's end too.
+/// assert_eq!(rope.advance(End::Anchor, [1.5, -1.0].into())?.len(), 1);
+/// assert!(rope.advance(End::Anchor, [3.0, 1.0].into())?.is_empty());
 /// assert_eq!((rope.length(), rope.pull(End::Anchor)), (1.0, Some([-1.0, 0.0].into())));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -34,14 +34,14 @@ pub struct FreeContact {
 /// let at = |x: f64, y: f64| TracePoint::from(glam::DVec2::new(x, y));
 /// let vertices = [glam::DVec2::new(1.0, 0.0)];
 /// let mut rope = FreeRope::new(at(0.0, -1.0));
-/// // The free end goes away to the right of the vertex and up, then the anchor goes up on the left of it.
+/// // The free end goes by below the vertex and up behind it, then the anchor goes up before it.
 /// for (end, to) in [(End::Free, at(3.0, -1.0)), (End::Free, at(3.0, 1.0)), (End::Anchor, at(-1.0, 1.0))] {
 ///     let (mut sweep, leg) = (Sweep::Start, rope.leg(end, to));
 ///     while rope.next(end, &mut sweep, &leg, &vertices, [0]).is_some() {}
 ///     rope.arrive(end, &leg);
 /// }
 /// assert_eq!(rope.taut().iter().map(|c| (c.vertex, c.side)).collect::<Vec<_>>(), [(0, Side::Left)]);
-/// assert_eq!(rope.measure(), (2f64.sqrt() + 2.0, 1));
+/// assert_eq!(rope.measure(), (2.0 * 5f64.sqrt(), 1));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeRope {
