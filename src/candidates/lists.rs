@@ -35,6 +35,8 @@ pub struct Lists {
     model: Arc<Model>,
     frame: Frame,
     keep_all: bool,
+    /// Whether ropes may start elsewhere than at the model's anchor.
+    anywhere: bool,
     budget: usize,
     worth: u32,
     /// How many triangles a look and the making of a list may take, if told.
@@ -72,6 +74,7 @@ impl Lists {
             frame: Frame::new(&model),
             model,
             keep_all: false,
+            anywhere: false,
             budget: LISTS_BUDGET,
             worth: WORTH_A_LIST,
             most: None,
@@ -93,6 +96,14 @@ impl Lists {
         self.forget();
         self.keep_all = true;
         self
+    }
+
+    /// Lists for ropes in the same scene that may start anywhere, of which none is made yet: with all that the pivots
+    /// see, be it out of reach of the model's anchor.
+    #[must_use]
+    pub fn anywhere(&self) -> Lists {
+        let Lists { keep_all, budget, worth, most, .. } = *self;
+        Lists { keep_all, budget, worth, most, anywhere: true, ..Lists::new(self.model.clone()) }
     }
 
     /// With a memory budget in bytes; the lists not used for longest go first.
@@ -291,7 +302,8 @@ impl Lists {
             Some(reach) => Visibility::within(&self.model, reach),
             None => Visibility::new(&self.model),
         };
-        self.visibility.get_or_init(|| made().map(Visibility::only_required)).as_ref()
+        let required = |seen: Visibility| if self.anywhere { seen } else { seen.only_required() };
+        self.visibility.get_or_init(|| made().map(required)).as_ref()
     }
 
     #[cold]

@@ -9,11 +9,12 @@ use tautline::output::write_whole;
 use tautline::picture::{Drawing, Situation};
 use tautline::rope::TraceRecord;
 use tautline::scene::Model;
-use tautline::stream::PickError;
-use tautline::trace::{SettledTrace, settle_owned};
+use tautline::stream::{PickError, Source, StreamError};
+use tautline::trace::{SettledEnds, SettledTrace, TraceReader, settle_ends, settle_owned};
 
+use super::ends::EndsArgs;
 use super::failure::Failure;
-use super::input::InputArgs;
+use super::input::{InputArgs, tie};
 use super::look::{Look, Target, write};
 use super::paths::keep_apart;
 use super::print;
@@ -29,6 +30,8 @@ pub(crate) struct Args {
     #[arg(id = "picture", long = "out", value_name = "FILE", required_unless_present = "gallery")]
     out: Option<PathBuf>,
     #[command(flatten)]
+    ends: EndsArgs,
+    #[command(flatten)]
     look: Look,
     /// Write the gallery of situations into this folder instead
     #[arg(long, value_name = "DIR", conflicts_with_all = ["picture", "scene", "traces", "anchor", "wanted"])]
@@ -39,7 +42,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match (&args.gallery, &args.out) {
         (Some(folder), _) => gallery(folder),
         (None, Some(out)) => {
-            keep_apart(&args.input.named(), &[("--out", Some(out))])?;
+            let [scene, traces] = args.input.named();
+            let inputs = [scene, traces, ("--anchor-trace", args.ends.anchor_trace.as_deref())];
+            keep_apart(&inputs, &[("--out", Some(out))])?;
             draw(args, &Target::new(out, &args.look)?)
         }
         (None, None) => Err(Failure::input(anyhow!("--out is missing: where the picture goes"))),
@@ -58,8 +63,15 @@ fn draw(args: &Args, target: &Target) -> Result<(), Failure> {
             Some(_) => write(target, &Drawing::new(&args.input.tie(scene)?), &args.look),
         };
     }
+    let mut source = args.input.source();
+    if let Ok(given) = &mut source
+        && args.ends.move_in(given)?
+        && let Ok(Source::File(traces)) = source
+    {
+        return draw_ends(args, traces, target);
+    }
     let model = Arc::new(args.input.model()?);
-    let settled = traces(args, &model)?;
+    let settled = traces(args, source?, &model)?;
     args.input.violations().take(&settled)?;
     let records = Cpu::new(model.clone()).evaluate(&settled, &Job::new())?;
     write(target, &drawing(&model, &settled, &records), &args.look)
@@ -70,16 +82,42 @@ fn drawing<'a>(model: &'a Model, settled: &[SettledTrace], records: &'a [TraceRe
     settled.iter().zip(records).fold(Drawing::new(model), |drawing, (trace, record)| drawing.with(trace, record))
 }
 
+/// Draws ropes whose ends both move.
+fn draw_ends(args: &Args, traces: TraceReader, target: &Target) -> Result<(), Failure> {
+    args.ends.refuse_anchor(&args.input)?;
+    if args.look.animate {
+        return Err(Failure::input(anyhow!(
+            "--animate is for ropes that are tied, and here the anchor moves: give --step"
+        )));
+    }
+    let found = args.ends.source(traces)?.pick(&args.wanted).map_err(|error| not_found(args, error))?;
+    let scene = args.input.walls()?;
+    let start = found.first().and_then(|both| both.anchor.first().copied()).or(scene.anchor()).unwrap_or_default();
+    let model = Arc::new(tie(scene, Some(start), &args.input.name(), &args.input.how_to_tie())?);
+    let settled = found.iter().map(|both| settle_ends(&model, &both.free, &both.anchor));
+    let settled: Vec<SettledEnds> = settled.collect::<Result<_, _>>().map_err(StreamError::from)?;
+    args.input.violations().take_ends(&settled)?;
+    let records = Cpu::new(model.clone()).evaluate_ends(&settled, &Job::new())?;
+    let all = settled.iter().zip(&records);
+    let drawing = all.fold(Drawing::new(&model), |drawing, (trace, record)| drawing.with_ends(trace, record));
+    write(target, &drawing, &args.look)
+}
+
 /// The traces that are wanted, in the order of their numbers.
-fn traces(args: &Args, model: &Model) -> Result<Vec<SettledTrace>, Failure> {
-    let found = args.input.source()?.pick(&args.wanted, model).map_err(|error| match (error, &args.input.traces) {
+fn traces(args: &Args, source: Source, model: &Model) -> Result<Vec<SettledTrace>, Failure> {
+    let found = source.pick(&args.wanted, model).map_err(|error| not_found(args, error))?;
+    Ok(found.into_iter().map(|trace| settle_owned(model, trace)).collect())
+}
+
+fn not_found(args: &Args, error: PickError) -> Failure {
+    match (error, &args.input.traces) {
         (PickError::Read(error), _) => error.into(),
+        (PickError::Ends(error), _) => error.into(),
         (PickError::Missing { trace, last, .. }, None) => {
             Failure::input(anyhow!("the built-in example has traces 0 to {last}, so there is no {trace}"))
         }
         (error, path) => Failure::input(anyhow!("{}: {error}", path.as_deref().unwrap_or(Path::new("")).display())),
-    })?;
-    Ok(found.into_iter().map(|trace| settle_owned(model, trace)).collect())
+    }
 }
 
 fn gallery(folder: &Path) -> Result<(), Failure> {

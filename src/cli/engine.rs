@@ -5,7 +5,7 @@ use std::sync::Arc;
 use anyhow::anyhow;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use tautline::engine::{
-    ENGINES, Engine, EngineError, EngineKind, GPU, Opened, Options, Precision, RunsOn, Why, open_best,
+    CPU, ENGINES, Engine, EngineError, EngineKind, GPU, Opened, Options, Precision, RunsOn, Why, open_best,
 };
 use tautline::gpu::{AdapterChoice, Device, GpuError, driver_faults};
 use tautline::scene::Model;
@@ -67,6 +67,20 @@ impl EngineArgs {
     /// choice.
     pub(crate) fn open(&self, model: &Arc<Model>) -> Result<(Box<dyn Engine>, String), Failure> {
         let opened = self.open_for(self.precision().unwrap_or_default(), model)?;
+        Ok((opened.engine, opened.on.to_string()))
+    }
+
+    /// Opens the engine asked for, for ropes whose ends both move; `cpu` unless told otherwise.
+    pub(crate) fn open_both_ends(&self, model: &Arc<Model>) -> Result<(Box<dyn Engine>, String), Failure> {
+        let kind = match self.engine.0 {
+            None if self.adapter.is_some() || self.precision() == Some(Precision::Fast) => &GPU,
+            asked => asked.unwrap_or(&CPU),
+        };
+        if !kind.both_ends {
+            return Err(EngineError::TwoEnds { engine: kind.name }.into());
+        }
+        self.check(self.precision().unwrap_or_default())?;
+        let opened = kind.open(model.clone(), None, &Options::default())?;
         Ok((opened.engine, opened.on.to_string()))
     }
 

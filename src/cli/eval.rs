@@ -5,18 +5,18 @@ use std::time::Instant;
 
 use tautline::engine::{Engine, Job, Precision};
 use tautline::output::check_output;
-use tautline::stream::{Account, Batches, Files, Stage, evaluate};
+use tautline::stream::{Account, Batches, EndsFiles, Files, Source, Stage, evaluate};
 use tautline::trade::Terms;
 
+use super::ends::{self, EndsArgs, Given};
 use super::engine::EngineArgs;
 use super::failure::Failure;
 use super::input::{InputArgs, dropped};
 use super::paths::keep_apart;
 use super::progress::{Progress, with_progress};
 use super::steps::StepArgs;
-use super::summary::table;
+use super::summary::finish;
 use super::trade::TradeArgs;
-use super::{print, print_json};
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
@@ -28,7 +28,7 @@ pub(crate) struct Args {
         long, value_name = "FILE", requires = "scene",
         conflicts_with_all = [
             "traces", "anchor", "events", "steps", "engine", "adapter", "precision", "stride", "simplify",
-            "on_violation",
+            "on_violation", "anchor_trace",
         ]
     )]
     queries: Option<PathBuf>,
@@ -38,6 +38,8 @@ pub(crate) struct Args {
     /// Where to write every wrap and unwrap: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
+    #[command(flatten)]
+    ends: EndsArgs,
     #[command(flatten)]
     every: StepArgs,
     #[command(flatten)]
@@ -55,12 +57,20 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return super::queries::run(scene, queries, args.out.as_deref(), args.json);
     }
     let start = Instant::now();
+    // What is wrong with the traces is said after what is wrong with the scene.
+    let mut source = args.input.source();
+    if let Ok(given) = &mut source
+        && args.ends.move_in(given)?
+        && let Ok(Source::File(traces)) = source
+    {
+        return ends::run(&args.of_ends(), traces);
+    }
     let terms = args.trade.terms(&args.input.name(), args.input.model()?)?;
     let model = &terms.used;
     if model.scene().dropped() > 0 {
         say!("note: {}", dropped(model.scene().dropped()));
     }
-    let source = args.input.source()?;
+    let source = source?;
     let (mut engine, on) = args.engine.open(model)?;
     let batches = Batches::start(source, terms.clone(), engine.batch());
     let mut account = Account::new(&args.input.name(), &terms, &*engine, on);
@@ -81,12 +91,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let outcome = with_progress(&progress, &job, || evaluate(batches, &mut *engine, files, policy, &job, watch));
     let times = outcome.map_err(|error| violations.failure(error))?;
     violations.finish();
-    let report = account.report(&*engine, &job, &times, start.elapsed());
-    if args.json {
-        return print_json(&report);
+    finish(&account.report(&*engine, &job, &times, start.elapsed()), args.json, args.out.is_none())
+}
+
+impl Args {
+    /// The same where both ends of ropes move.
+    fn of_ends(&self) -> Given<'_> {
+        let files = EndsFiles { out: self.out.as_deref(), events: self.events.as_deref(), steps: None };
+        let others = [("--stride", self.trade.stride.is_some()), ("--simplify", self.trade.simplify.is_some())];
+        let Args { input, ends, engine, every, json, .. } = self;
+        Given { input, ends, engine, every, files, others, json: *json }
     }
-    let hint = "--out FILE writes every trace's rope, --events FILE every wrap and unwrap\n";
-    print(&format!("{}{}", table(&report), if args.out.is_none() { hint } else { "" }))
 }
 
 /// What results say of themselves: nothing if they are exact.
@@ -102,6 +117,7 @@ fn check_outputs(args: &Args) -> Result<(), Failure> {
     outputs.into_iter().flatten().try_for_each(|path| check_output(path))?;
     let [out, events, steps] = outputs.map(Option::as_deref);
     let [scene, traces] = args.input.named();
-    let inputs = [scene, traces, ("--queries", args.queries.as_deref())];
+    let paths = args.ends.anchor_trace.as_deref();
+    let inputs = [scene, traces, ("--queries", args.queries.as_deref()), ("--anchor-trace", paths)];
     keep_apart(&inputs, &[("--out", out), ("--events", events), ("--steps", steps)])
 }

@@ -114,9 +114,10 @@ impl From<EngineError> for Failure {
         match error {
             EngineError::Gpu(error) => error.into(),
             EngineError::Stopped => Failure::interrupted(false),
-            EngineError::Unfit { .. } | EngineError::NoDevice { .. } | EngineError::Precision { .. } => {
-                Failure::input(error.into())
-            }
+            EngineError::Unfit { .. }
+            | EngineError::NoDevice { .. }
+            | EngineError::Precision { .. }
+            | EngineError::TwoEnds { .. } => Failure::input(error.into()),
         }
     }
 }
@@ -127,7 +128,10 @@ impl From<StreamError> for Failure {
             StreamError::Read(error) => error.into(),
             StreamError::Engine(error) => error.into(),
             StreamError::Write(error) => error.into(),
-            StreamError::Violation(_) => Failure::input(error.into()),
+            StreamError::Violation(_)
+            | StreamError::AnchorViolation(_)
+            | StreamError::Ends(_)
+            | StreamError::NoAnchor { .. } => Failure::input(error.into()),
             StreamError::Ended => Failure::internal(error.into()),
         }
     }

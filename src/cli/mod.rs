@@ -8,6 +8,7 @@ mod bench;
 mod check;
 mod convert;
 mod draw;
+mod ends;
 mod engine;
 pub(crate) mod environment;
 mod eval;

@@ -3,13 +3,24 @@
 use tautline::stream::{Report, Statistics};
 use tautline::study::quantity;
 
+use super::failure::Failure;
 use super::words::{counted, grouped, place, short};
+use super::{print, print_json};
 
 /// How many labels the table has at the most.
 const LABELS: usize = 10;
 
+/// Prints what a run came to; with a hint, if it is to have one.
+pub(super) fn finish(report: &Report, json: bool, has_hint: bool) -> Result<(), Failure> {
+    if json {
+        return print_json(report);
+    }
+    let hint = "--out FILE writes every trace's rope, --events FILE every wrap and unwrap\n";
+    print(&format!("{}{}", table(report), if has_hint { hint } else { "" }))
+}
+
 /// A run in numbers.
-pub(super) fn table(report: &Report) -> String {
+fn table(report: &Report) -> String {
     let Report { scene, traces, steps, still, violations, seconds, tests, .. } = report;
     let tried = match scene.remaining {
         None => String::new(),

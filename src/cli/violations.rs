@@ -1,8 +1,10 @@
 //! Traces that cross walls: what is said about them, and whether they end the run.
 
+use std::fmt::Display;
+
 use anyhow::anyhow;
 use tautline::stream::{self, StreamError};
-use tautline::trace::{SettledTrace, Violation};
+use tautline::trace::{End, SettledEnds, SettledTrace, Violation};
 
 use super::failure::Failure;
 
@@ -56,14 +58,37 @@ impl Violations {
         settled.iter().filter_map(|t| t.violation()).for_each(|violation| self.warn(violation));
     }
 
-    fn warn(&mut self, violation: &Violation) {
+    /// Looks through the next traces of ropes whose ends both move: the first violation is an error, or all are warned
+    /// of.
+    pub(crate) fn take_ends(&mut self, settled: &[SettledEnds]) -> Result<(), Failure> {
+        match (settled.iter().find_map(SettledEnds::violation), self.policy) {
+            (Some((End::Free, first)), OnViolation::Error) => Err(self.refused(first)),
+            (Some((End::Anchor, first)), OnViolation::Error) => {
+                Err(self.refused(format_args!("the anchor of {first}")))
+            }
+            _ => {
+                self.flag_ends(settled);
+                Ok(())
+            }
+        }
+    }
+
+    /// The same of ropes whose ends both move.
+    pub(crate) fn flag_ends(&mut self, settled: &[SettledEnds]) {
+        settled.iter().filter_map(SettledEnds::violation).for_each(|(end, violation)| match end {
+            End::Free => self.warn(violation),
+            End::Anchor => self.warn(format_args!("the anchor of {violation}")),
+        });
+    }
+
+    fn warn(&mut self, violation: impl Display) {
         if self.found < SHOWN {
             say!("warning: {}{violation}", self.file);
         }
         self.found += 1;
     }
 
-    fn refused(&self, violation: &Violation) -> Failure {
+    fn refused(&self, violation: impl Display) -> Failure {
         let hint = "--on-violation flag marks such traces and goes on";
         Failure::input(anyhow!("{}{violation}; {hint}", self.file))
     }
@@ -71,7 +96,7 @@ impl Violations {
     /// What is said of a stream that ended early.
     pub(crate) fn failure(&self, error: StreamError) -> Failure {
         match error {
-            StreamError::Violation(violation) => self.refused(&violation),
+            StreamError::Violation(_) | StreamError::AnchorViolation(_) => self.refused(error),
             other => other.into(),
         }
     }

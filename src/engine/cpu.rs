@@ -1,17 +1,19 @@
 //! The window pipeline for machines without a GPU: one trace after the other on each thread.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
+use glam::DVec2;
 use rayon::prelude::*;
 
+use super::ends;
 use super::hand::Hand;
 use super::table::Open;
 use super::windows::Windows;
 use super::{Engine, EngineError, EngineKind, Job, Precision, Promise, WINDOW};
 use crate::candidates::{Lists, Simd};
-use crate::rope::TraceRecord;
+use crate::rope::{EndsRecord, TraceRecord};
 use crate::scene::Model;
-use crate::trace::{SettledTrace, bounds};
+use crate::trace::{SettledEnds, SettledTrace, bounds};
 
 /// The engine for machines without a GPU.
 pub static CPU: EngineKind = EngineKind {
@@ -19,6 +21,7 @@ pub static CPU: EngineKind = EngineKind {
     about: "The same on threads",
     precisions: &[Precision::Certified],
     asks: true,
+    both_ends: true,
     promise: Promise::Events,
     open: Open::Threads(|model, options| Box::new(Cpu::new(model).window(options.window))),
 };
@@ -26,6 +29,8 @@ pub static CPU: EngineKind = EngineKind {
 /// Evaluates traces on all cores, for one model.
 pub struct Cpu {
     lists: Lists,
+    /// For ropes whose ends both move, wherever they start; made when there is one.
+    anywhere: OnceLock<Lists>,
     window: usize,
     simd: Simd,
 }
@@ -38,7 +43,7 @@ impl Cpu {
 
     /// An engine that tries the vertices of `lists`.
     pub fn with_lists(lists: Lists) -> Self {
-        Cpu { lists, window: WINDOW, simd: Simd::detected() }
+        Cpu { lists, anywhere: OnceLock::new(), window: WINDOW, simd: Simd::detected() }
     }
 
     /// The same engine with windows of at most `legs` legs, at least 1.
@@ -83,11 +88,18 @@ impl Engine for Cpu {
         traces.par_iter().map_init(hand, |(hand, windows), trace| hand.evaluate(windows, trace, job)).collect()
     }
 
+    fn evaluate_ends(&mut self, traces: &[SettledEnds], job: &Job) -> Result<Vec<EndsRecord>, EngineError> {
+        let lists = self.anywhere.get_or_init(|| self.lists.anywhere());
+        let find = |about: ends::About, leg: [DVec2; 2], tried: &mut Vec<u32>| ends::listed(lists, about, leg, tried);
+        traces.par_iter().map(|trace| ends::evaluate(lists.model(), trace, job, find)).collect()
+    }
+
     fn remaining(&self) -> Option<usize> {
         self.lists.remaining_count()
     }
 
     fn forget(&mut self) {
         self.lists.forget();
+        self.anywhere.take();
     }
 }

@@ -3,8 +3,8 @@
 use super::error::EngineError;
 use super::job::Job;
 use super::precision::Precision;
-use crate::rope::TraceRecord;
-use crate::trace::SettledTrace;
+use crate::rope::{EndsRecord, TraceRecord};
+use crate::trace::{SettledEnds, SettledTrace};
 
 /// How many traces engines without a device can make use of at once: enough that all threads end at about the same
 /// time.
@@ -33,6 +33,18 @@ pub trait Engine: Send {
     ///
     /// [`EngineError::Stopped`] when the job was stopped, and whatever can go wrong with the engine's device.
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError>;
+
+    /// The same for ropes whose ends both move, settled against the scene of the engine's model; where that ties its
+    /// rope is of no matter. An anchor that stays where it is gives the records that [`evaluate`](Self::evaluate) gives
+    /// where the model ties the rope there.
+    ///
+    /// # Errors
+    ///
+    /// [`EngineError::TwoEnds`] of engines that do not take such ropes, and those of [`evaluate`](Self::evaluate).
+    fn evaluate_ends(&mut self, traces: &[SettledEnds], job: &Job) -> Result<Vec<EndsRecord>, EngineError> {
+        let _ = (traces, job);
+        Err(EngineError::TwoEnds { engine: self.name() })
+    }
 
     /// How many traces, at the most, it can make use of in one evaluation: with fewer it may be slower, with more it is
     /// no faster.

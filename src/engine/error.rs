@@ -35,6 +35,12 @@ pub enum EngineError {
         /// In which precision.
         precision: Precision,
     },
+    /// It has the rope's anchor stay where it is.
+    #[error("the engine {engine} does not take ropes whose anchor moves; the engines cpu and reference do")]
+    TwoEnds {
+        /// Which engine.
+        engine: &'static str,
+    },
     /// The GPU failed, or exact ropes cannot rely on it.
     #[error(transparent)]
     Gpu(#[from] GpuError),

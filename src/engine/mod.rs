@@ -2,6 +2,7 @@
 //! vertices to try (but for `note` and `funnel`, which are other methods altogether).
 
 mod cpu;
+mod ends;
 mod engine;
 mod engines;
 mod error;
@@ -10,6 +11,7 @@ mod gpu;
 mod hand;
 mod job;
 mod live;
+mod live_ends;
 mod note;
 mod precision;
 mod progress;
@@ -25,6 +27,7 @@ pub use funnel::{FUNNEL, Funnel};
 pub use gpu::{FastGpu, GPU, GPU_RAYS, GPU_WINDOWS, Gpu, GpuRays, GpuWindows};
 pub use job::{Job, Phase};
 pub use live::{AdvanceError, LiveEvent, LiveRope};
+pub use live_ends::LiveEnds;
 pub use note::{NOTE, Note};
 pub use precision::Precision;
 pub use reference::{REFERENCE, Reference};

@@ -19,6 +19,7 @@ pub static NOTE: EngineKind = EngineKind {
     about: "The seed note's listing 1, as written: wrong on purpose, for comparison",
     precisions: &[],
     asks: false,
+    both_ends: false,
     promise: Promise::Nothing,
     open: Open::Thread(|model| Box::new(Note::new(model))),
 };

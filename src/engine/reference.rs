@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use super::ends;
 use super::progress::Progress;
 use super::table::Open;
 use super::{Engine, EngineError, EngineKind, Job, Precision, Promise};
-use crate::rope::TraceRecord;
+use crate::rope::{EndsRecord, TraceRecord};
 use crate::scene::Model;
-use crate::trace::SettledTrace;
+use crate::trace::{SettledEnds, SettledTrace};
 
 /// The arbiter.
 pub static REFERENCE: EngineKind = EngineKind {
@@ -15,6 +16,7 @@ pub static REFERENCE: EngineKind = EngineKind {
     about: "One trace and one step after the other, every vertex tried: the arbiter",
     precisions: &[Precision::Certified],
     asks: false,
+    both_ends: true,
     promise: Promise::Events,
     open: Open::Thread(|model| Box::new(Reference::new(model))),
 };
@@ -54,5 +56,9 @@ impl Engine for Reference {
             records.push(progress.record(trace));
         }
         Ok(records)
+    }
+
+    fn evaluate_ends(&mut self, traces: &[SettledEnds], job: &Job) -> Result<Vec<EndsRecord>, EngineError> {
+        traces.iter().map(|trace| ends::evaluate(&self.model, trace, job, ends::all(&self.model))).collect()
     }
 }

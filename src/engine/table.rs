@@ -20,6 +20,8 @@ pub struct EngineKind {
     /// Whether it asks queries over windows, so that [`Options::window`] changes how it works. What it certifies does
     /// not depend on it.
     pub asks: bool,
+    /// Whether it takes ropes whose ends both move ([`Engine::evaluate_ends`]).
+    pub both_ends: bool,
     /// What it promises where f32 does not decide alone.
     pub(super) promise: Promise,
     /// How it is made.

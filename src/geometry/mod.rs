@@ -3,6 +3,7 @@
 mod corners;
 mod limits;
 mod predicates;
+mod resting;
 mod trace_point;
 
 pub use corners::{higher, lower};
@@ -10,4 +11,5 @@ pub use limits::{COORDINATE_MAX, COORDINATE_MIN, CoordinateFault, check_point, c
 pub(crate) use limits::{Shown, point};
 pub(crate) use predicates::CERTAIN;
 pub use predicates::{between, forwards, opposite, orient, same_side};
+pub use resting::{Resting, Stand};
 pub use trace_point::{Hair, TracePoint, Turn, left_of, orient_step};

@@ -71,9 +71,23 @@ impl Hair {
         if side != 0.0 {
             return side;
         }
-        let same = parallel(at, self.witness, at, other.witness) == (self.away == other.away);
         let turned = other.turn.sign() - self.turn.sign();
-        if same { turned } else { -turned }
+        if self.goes_with(at, other) { turned } else { -turned }
+    }
+
+    /// The same sign where `other` is a hair of the rope's other end, and turned by an infinitely larger angle; never
+    /// 0.
+    pub(super) fn cross_end(self, at: DVec2, other: Hair) -> f64 {
+        let side = self.cross(at, other);
+        if side != 0.0 {
+            return side;
+        }
+        if self.goes_with(at, other) { other.turn.sign() } else { -other.turn.sign() }
+    }
+
+    /// For hairs at one vertex along one line: whether they go the same way.
+    fn goes_with(self, at: DVec2, other: Hair) -> bool {
+        parallel(at, self.witness, at, other.witness) == (self.away == other.away)
     }
 }
 

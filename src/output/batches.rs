@@ -46,7 +46,7 @@ pub fn result_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec
 pub fn event_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec<RecordBatch>) {
     let labels = &Labels::of(scene);
     let events = records.iter().flat_map(|record| record.events.iter().map(|event| (record.trace, event)));
-    batches(EventColumns::new(labels), events, |columns, (trace, event)| {
+    batches(EventColumns::new(labels, false), events, |columns, (trace, event)| {
         columns.push(&row(scene, labels, trace, event))
     })
 }

@@ -13,6 +13,7 @@ use super::labels::Labels;
 use super::tables::Columns;
 use super::text::Row;
 use crate::rope::{Event, TraceRecord};
+use crate::trace::End;
 
 fn point_fields() -> Fields {
     Fields::from(vec![Field::new("x", DataType::Float64, false), Field::new("y", DataType::Float64, false)])
@@ -155,14 +156,17 @@ pub(super) struct EventColumns {
     x: Float64Builder,
     y: Float64Builder,
     side: StringBuilder,
+    /// Where both ends of ropes move.
+    end: Option<StringBuilder>,
     /// Where wall ends have labels.
     label: Option<StringBuilder>,
 }
 
 impl EventColumns {
-    /// With room for labels, if there are some.
-    pub(super) fn new(labels: &Labels) -> Self {
-        EventColumns { label: (!labels.is_empty()).then(StringBuilder::new), ..EventColumns::default() }
+    /// With room for labels, if there are some, and for ends, if both move.
+    pub(super) fn new(labels: &Labels, both_move: bool) -> Self {
+        let end = both_move.then(StringBuilder::new);
+        EventColumns { end, label: (!labels.is_empty()).then(StringBuilder::new), ..EventColumns::default() }
     }
 
     pub(super) fn push(&mut self, row: &Row<'_>) {
@@ -175,6 +179,9 @@ impl EventColumns {
         self.x.append_value(at.x);
         self.y.append_value(at.y);
         self.side.append_value(row.side());
+        if let Some(column) = &mut self.end {
+            column.append_option(row.end.map(End::name));
+        }
         if let Some(column) = &mut self.label {
             column.append_option(row.label.flatten());
         }
@@ -183,6 +190,7 @@ impl EventColumns {
 
 impl Columns for EventColumns {
     fn fields(&self) -> Vec<Field> {
+        let end = self.end.as_ref().map(|_| Field::new("end", DataType::Utf8, false));
         let label = self.label.as_ref().map(|_| Field::new("label", DataType::Utf8, true));
         let fields = vec![
             Field::new("trace", DataType::UInt64, false),
@@ -193,7 +201,7 @@ impl Columns for EventColumns {
             Field::new("y", DataType::Float64, false),
             Field::new("side", DataType::Utf8, false),
         ];
-        fields.into_iter().chain(label).collect()
+        fields.into_iter().chain(end).chain(label).collect()
     }
 
     fn len(&self) -> usize {
@@ -201,6 +209,7 @@ impl Columns for EventColumns {
     }
 
     fn take(&mut self) -> Vec<ArrayRef> {
+        let end = self.end.as_mut().map(|end| Arc::new(end.finish()) as ArrayRef);
         let label = self.label.as_mut().map(|label| Arc::new(label.finish()) as ArrayRef);
         let columns: Vec<ArrayRef> = vec![
             Arc::new(self.trace.finish()),
@@ -211,6 +220,6 @@ impl Columns for EventColumns {
             Arc::new(self.y.finish()),
             Arc::new(self.side.finish()),
         ];
-        columns.into_iter().chain(label).collect()
+        columns.into_iter().chain(end).chain(label).collect()
     }
 }

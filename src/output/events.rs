@@ -7,8 +7,9 @@ use super::labels::Labels;
 use super::rows::Rows;
 use super::text::Row;
 use super::{CHUNK, WholeFile, WriteError, text};
-use crate::rope::{Event, TraceRecord};
+use crate::rope::{EndsRecord, Event, TraceRecord};
 use crate::scene::Scene;
+use crate::trace::End;
 
 /// Writes the events of traces to a file that appears when it is finished.
 ///
@@ -28,12 +29,25 @@ impl EventWriter {
     ///
     /// Those of [`check_output`](super::check_output).
     pub fn create(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
+        Self::with(path, scene, false)
+    }
+
+    /// The same for ropes whose ends both move: a column `end` follows the side, `free` or `anchor`, and
+    /// [`write_ends`](Self::write_ends) adds the events.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`check_output`](super::check_output).
+    pub fn of_ends(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
+        Self::with(path, scene, true)
+    }
+
+    fn with(path: &Path, scene: &Scene, both_move: bool) -> Result<Self, WriteError> {
         let labels = Labels::of(scene);
-        let header = match labels.is_empty() {
-            true => text::EVENT_HEADER.to_owned(),
-            false => format!("{},label", text::EVENT_HEADER),
-        };
-        Ok(EventWriter { rows: Rows::create(path, &header, EventColumns::new(&labels))?, labels })
+        let end = if both_move { ",end" } else { "" };
+        let label = if labels.is_empty() { "" } else { ",label" };
+        let header = format!("{}{end}{label}", text::EVENT_HEADER);
+        Ok(EventWriter { rows: Rows::create(path, &header, EventColumns::new(&labels, both_move))?, labels })
     }
 
     /// Adds the events of one trace in that scene.
@@ -74,6 +88,30 @@ impl EventWriter {
         )
     }
 
+    /// Adds the events of traces of ropes whose ends both move, to a file [of such](Self::of_ends).
+    ///
+    /// # Errors
+    ///
+    /// Those of [`write`](Self::write).
+    ///
+    /// # Panics
+    ///
+    /// If an event names a vertex that is not there.
+    pub fn write_ends(&mut self, scene: &Scene, records: &[EndsRecord]) -> Result<(), WriteError> {
+        let labels = &self.labels;
+        self.rows.write_all(
+            records,
+            |text, r| r.events().try_for_each(|e| text::event_json(text, &row_of(scene, labels, r, e))),
+            |text, r| r.events().try_for_each(|e| text::event_csv(text, &row_of(scene, labels, r, e))),
+            |table, r| {
+                r.events().try_for_each(|e| {
+                    table.columns.push(&row_of(scene, labels, r, e));
+                    table.flush_if_full()
+                })
+            },
+        )
+    }
+
     /// Notes something about the events, where they come from say, in the metadata of a Parquet file; the other formats
     /// have no place for it.
     pub fn note(&mut self, key: &str, value: &str) {
@@ -103,7 +141,13 @@ impl EventWriter {
 /// An event of a trace as rows have it.
 pub(super) fn row<'e>(scene: &Scene, labels: &'e Labels, trace: u64, event: &'e Event) -> Row<'e> {
     let label = (!labels.is_empty()).then(|| labels.get(event.vertex));
-    Row { trace, event, at: scene.vertices()[event.vertex as usize], y_down: scene.y_down(), label }
+    let at = scene.vertices()[event.vertex as usize];
+    Row { trace, event, end: None, at, y_down: scene.y_down(), label }
+}
+
+/// An event at an end of a rope whose ends both move.
+fn row_of<'e>(scene: &Scene, labels: &'e Labels, r: &'e EndsRecord, (event, end): (&'e Event, End)) -> Row<'e> {
+    Row { end: Some(end), ..row(scene, labels, r.record.trace, event) }
 }
 
 /// Writes the events of all `records` in `scene` to `path`, as [`EventWriter`] does.

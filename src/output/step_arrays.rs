@@ -20,32 +20,34 @@ const GROUP: usize = 1 << 20;
 pub(super) struct StepArrays {
     columns: StepColumns,
     windings: Vec<String>,
+    /// Whether the anchor moves.
+    both_move: bool,
 }
 
 impl StepArrays {
-    pub(super) fn new(centres: &[Centre]) -> Self {
-        StepArrays::of(StepColumns::new(centres.len()), centres)
+    pub(super) fn new(centres: &[Centre], both_move: bool) -> Self {
+        StepArrays::of(StepColumns::new(centres.len()), centres, both_move)
     }
 
-    pub(super) fn of(columns: StepColumns, centres: &[Centre]) -> Self {
-        StepArrays { columns, windings: centres.iter().map(winding).collect() }
+    pub(super) fn of(columns: StepColumns, centres: &[Centre], both_move: bool) -> Self {
+        StepArrays { columns, windings: centres.iter().map(winding).collect(), both_move }
     }
 }
 
 impl Columns for StepArrays {
     fn fields(&self) -> Vec<Field> {
+        let places = ["x", "y", "bx", "by"].into_iter().take(if self.both_move { 4 } else { 2 });
+        let numbers = [("trace", DataType::UInt64, false), ("step", DataType::UInt64, false)];
         let fields = [
-            ("trace", DataType::UInt64, false),
-            ("step", DataType::UInt64, false),
-            ("x", DataType::Float64, false),
-            ("y", DataType::Float64, false),
             ("length", DataType::Float64, false),
             ("contacts", DataType::UInt32, false),
             ("turns", DataType::UInt32, false),
             ("pull_x", DataType::Float64, true),
             ("pull_y", DataType::Float64, true),
         ];
-        let fields = fields.into_iter().map(|(name, of, nullable)| Field::new(name, of, nullable));
+        let places = places.map(|name| (name, DataType::Float64, false));
+        let fields = numbers.into_iter().chain(places).chain(fields);
+        let fields = fields.map(|(name, of, nullable)| Field::new(name, of, nullable));
         fields.chain(self.windings.iter().map(|name| Field::new(name, DataType::Int64, false))).collect()
     }
 
@@ -58,11 +60,11 @@ impl Columns for StepArrays {
         self.columns = StepColumns::new(self.windings.len());
         // Without a single rope of no length there is nothing to say of nulls.
         let pulls = (!c.pulls.iter().all(|&pulls| pulls)).then(|| c.pulls.into());
-        let columns: Vec<ArrayRef> = vec![
-            Arc::new(UInt64Array::from(c.trace)),
-            Arc::new(UInt64Array::from(c.step)),
-            Arc::new(Float64Array::from(c.x)),
-            Arc::new(Float64Array::from(c.y)),
+        let mut columns: Vec<ArrayRef> =
+            vec![Arc::new(UInt64Array::from(c.trace)), Arc::new(UInt64Array::from(c.step))];
+        let places = [c.x, c.y, c.bx, c.by].into_iter().take(if self.both_move { 4 } else { 2 });
+        columns.extend(places.map(|column| Arc::new(Float64Array::from(column)) as ArrayRef));
+        let rest: [ArrayRef; 5] = [
             Arc::new(Float64Array::from(c.length)),
             Arc::new(UInt32Array::from(c.contacts)),
             Arc::new(UInt32Array::from(c.turns)),
@@ -70,12 +72,12 @@ impl Columns for StepArrays {
             Arc::new(Float64Array::new(c.pull_y.into(), pulls)),
         ];
         let windings = c.windings.into_iter().map(|windings| Arc::new(Int64Array::from(windings)) as ArrayRef);
-        columns.into_iter().chain(windings).collect()
+        columns.into_iter().chain(rest).chain(windings).collect()
     }
 
     /// Numbers of steps grow by one, and hardly a float is there twice: dictionaries of them are work for nothing.
     fn properties(&self, builder: WriterPropertiesBuilder) -> WriterPropertiesBuilder {
-        let builder = ["x", "y", "length", "pull_x", "pull_y"]
+        let builder = ["x", "y", "bx", "by", "length", "pull_x", "pull_y"]
             .into_iter()
             .fold(builder, |builder, name| builder.set_column_dictionary_enabled(name.into(), false));
         builder

@@ -7,16 +7,16 @@ use super::text::number;
 use crate::rope::StepColumns;
 use crate::scene::Centre;
 
-const HEADER: &str = "trace,step,x,y,length,contacts,turns,pull_x,pull_y";
+const HEADER: [&str; 2] = ["trace,step,x,y", ",length,contacts,turns,pull_x,pull_y"];
 
 /// What the column of windings about a centre is called.
 pub(super) fn winding(centre: &Centre) -> String {
     format!("winding_{}", centre.name)
 }
 
-/// The first line of CSV.
-pub(super) fn header(centres: &[Centre]) -> String {
-    let mut line = HEADER.as_bytes().to_vec();
+/// The first line of CSV, with where the anchor is if it moves.
+pub(super) fn header(centres: &[Centre], both_move: bool) -> String {
+    let mut line = HEADER.join(if both_move { ",bx,by" } else { "" }).into_bytes();
     for centre in centres {
         line.push(b',');
         field(&mut line, &winding(centre)).expect("memory takes all");
@@ -27,7 +27,8 @@ pub(super) fn header(centres: &[Centre]) -> String {
 pub(super) fn csv(out: &mut Vec<u8>, columns: &StepColumns, row: usize) -> io::Result<()> {
     let c = columns;
     write!(out, "{},{}", c.trace[row], c.step[row])?;
-    for x in [c.x[row], c.y[row], c.length[row]] {
+    let anchor = [&c.bx, &c.by].into_iter().filter_map(|b| b.get(row).copied());
+    for x in [c.x[row], c.y[row]].into_iter().chain(anchor).chain([c.length[row]]) {
         out.push(b',');
         number(out, x)?;
     }
@@ -47,7 +48,8 @@ pub(super) fn csv(out: &mut Vec<u8>, columns: &StepColumns, row: usize) -> io::R
 pub(super) fn json(out: &mut Vec<u8>, columns: &StepColumns, row: usize, centres: &[Centre]) -> io::Result<()> {
     let c = columns;
     write!(out, "{{\"trace\":{},\"step\":{}", c.trace[row], c.step[row])?;
-    for (name, x) in [("x", c.x[row]), ("y", c.y[row]), ("length", c.length[row])] {
+    let anchor = [("bx", &c.bx), ("by", &c.by)].into_iter().filter_map(|(name, b)| Some((name, *b.get(row)?)));
+    for (name, x) in [("x", c.x[row]), ("y", c.y[row])].into_iter().chain(anchor).chain([("length", c.length[row])]) {
         write!(out, ",\"{name}\":")?;
         number(out, x)?;
     }

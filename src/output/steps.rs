@@ -7,9 +7,9 @@ use std::sync::Arc;
 use super::rows::Rows;
 use super::step_arrays::StepArrays;
 use super::{WholeFile, WriteError, step_text};
-use crate::rope::{StepColumns, Steps, TraceRecord};
+use crate::rope::{EndsRecord, EndsSteps, StepColumns, Steps, TraceRecord};
 use crate::scene::{Centre, Model};
-use crate::trace::SettledTrace;
+use crate::trace::{SettledEnds, SettledTrace};
 
 /// How many rows are held before they are written: the bound on memory.
 const ROWS: usize = 1 << 16;
@@ -26,6 +26,7 @@ pub struct StepWriter {
     columns: StepColumns,
     model: Arc<Model>,
     centres: Vec<Centre>,
+    both_move: bool,
 }
 
 impl StepWriter {
@@ -36,9 +37,45 @@ impl StepWriter {
     ///
     /// Those of [`check_output`](super::check_output).
     pub fn create(path: &Path, model: &Arc<Model>, centres: &[Centre]) -> Result<Self, WriteError> {
-        let rows = Rows::create(path, &step_text::header(centres), StepArrays::new(centres))?;
+        Self::with(path, model, centres, false)
+    }
+
+    /// The same for ropes whose ends both move: columns `bx` and `by`, where the anchor is, follow `y`, and
+    /// [`write_ends`](Self::write_ends) adds the steps.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`check_output`](super::check_output).
+    pub fn of_ends(path: &Path, model: &Arc<Model>, centres: &[Centre]) -> Result<Self, WriteError> {
+        Self::with(path, model, centres, true)
+    }
+
+    fn with(path: &Path, model: &Arc<Model>, centres: &[Centre], both_move: bool) -> Result<Self, WriteError> {
+        let header = step_text::header(centres, both_move);
+        let rows = Rows::create(path, &header, StepArrays::new(centres, both_move))?;
         let columns = StepColumns::new(centres.len());
-        Ok(StepWriter { rows, columns, model: model.clone(), centres: centres.to_vec() })
+        Ok(StepWriter { rows, columns, model: model.clone(), centres: centres.to_vec(), both_move })
+    }
+
+    /// Adds the steps of traces of ropes whose ends both move, each with what became of it, to a file
+    /// [of such](Self::of_ends).
+    ///
+    /// # Errors
+    ///
+    /// As those of [`write_all`](Self::write_all).
+    ///
+    /// # Panics
+    ///
+    /// As [`EndsSteps::new`] and [`EndsSteps::next`], if a record is not that of its trace.
+    pub fn write_ends(&mut self, traces: &[SettledEnds], records: &[EndsRecord]) -> Result<(), WriteError> {
+        let model = self.model.clone();
+        traces.iter().zip(records).try_for_each(|(trace, record)| {
+            let mut steps = EndsSteps::new(&model, trace, record, &self.centres);
+            while !self.columns.take_ends(record.record.trace, &mut steps, ROWS) {
+                self.flush()?;
+            }
+            Ok(())
+        })
     }
 
     /// Adds the steps of traces, each with what became of it, tied where the rope of the file's model is.
@@ -104,7 +141,7 @@ impl StepWriter {
         self.columns = StepColumns::new(self.centres.len());
         let centres = &self.centres;
         match &mut self.rows {
-            Rows::Parquet(table) => table.write_columns(StepArrays::of(columns, centres)),
+            Rows::Parquet(table) => table.write_columns(StepArrays::of(columns, centres, self.both_move)),
             text => {
                 let rows: Vec<usize> = (0..columns.len()).collect();
                 text.write_all(

@@ -268,7 +268,7 @@ mod tests {
         let event = record(1).events[0];
         let failed = (0..1_000_000u64).find_map(|i| {
             let at = DVec2::new(i as f64, 0.0);
-            many.columns.push(&Row { trace: i, event: &event, at, y_down: false, label: None });
+            many.columns.push(&Row { trace: i, event: &event, end: None, at, y_down: false, label: None });
             many.flush_if_full().err()
         });
         assert_eq!(failed.unwrap().to_string(), expected);

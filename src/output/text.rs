@@ -10,6 +10,7 @@ use serde::{Serialize, Serializer};
 
 use super::labels::{Labels, field};
 use crate::rope::{Event, Side, TraceRecord};
+use crate::trace::End;
 
 pub(super) const RESULT_HEADER: &str =
     "trace,status,steps,length,max_length,depth,max_depth,events,wraps,sides,pull_x,pull_y";
@@ -72,6 +73,9 @@ struct EventLine<'a> {
     x: f64,
     y: f64,
     side: &'static str,
+    /// Left out where only one end moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    end: Option<&'static str>,
     /// Null where this wall end has none, left out where none has.
     #[serde(skip_serializing_if = "Option::is_none")]
     label: Option<Option<&'a str>>,
@@ -133,6 +137,8 @@ pub(super) fn result_csv(out: &mut impl Write, y_down: bool, r: &TraceRecord, la
 pub(super) struct Row<'a> {
     pub trace: u64,
     pub event: &'a Event,
+    /// At which end it happened, where both move.
+    pub end: Option<End>,
     /// Where the vertex stands.
     pub at: DVec2,
     /// Whether the scene's y points down.
@@ -151,7 +157,8 @@ impl Row<'_> {
 pub(super) fn event_json(out: &mut impl Write, row: &Row<'_>) -> io::Result<()> {
     let Row { trace, at, label, .. } = *row;
     let Event { step, kind, vertex, .. } = *row.event;
-    let line = EventLine { trace, step, kind: kind.name(), vertex, x: at.x, y: at.y, side: row.side(), label };
+    let (kind, end) = (kind.name(), row.end.map(End::name));
+    let line = EventLine { trace, step, kind, vertex, x: at.x, y: at.y, side: row.side(), end, label };
     serde_json::to_writer(&mut *out, &line)?;
     out.write_all(b"\n")
 }
@@ -163,6 +170,9 @@ pub(super) fn event_csv(out: &mut impl Write, row: &Row<'_>) -> io::Result<()> {
     out.write_all(b",")?;
     number(out, row.at.y)?;
     write!(out, ",{}", row.side())?;
+    if let Some(end) = row.end {
+        write!(out, ",{}", end.name())?;
+    }
     if let Some(label) = row.label {
         out.write_all(b",")?;
         field(out, label.unwrap_or_default())?;

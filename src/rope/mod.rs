@@ -1,6 +1,9 @@
 //! The rope: the stack of contacts, the exact update, and the record of what happened. Knows nothing of files, threads
 //! or GPUs.
 
+mod ends_record;
+mod ends_steps;
+mod free_rope;
 mod moment;
 mod record;
 mod replay;
@@ -8,8 +11,12 @@ mod rounds;
 mod stack;
 mod step_columns;
 mod steps;
+mod strand;
 mod update;
 
+pub use ends_record::EndsRecord;
+pub use ends_steps::EndsSteps;
+pub use free_rope::{FreeContact, FreeRope};
 pub use moment::Moment;
 pub use record::{Event, EventKind, Status, TraceRecord};
 pub(crate) use replay::{Lasting, lasting};
@@ -18,4 +25,5 @@ pub use rounds::Rounds;
 pub use stack::{Contact, Rope, Side};
 pub use step_columns::StepColumns;
 pub use steps::{RopeStep, Steps};
+pub use strand::Strand;
 pub use update::{Leg, Sweep};

@@ -84,11 +84,16 @@ impl TautEnd {
 
     /// The unit vector from `a` to here; `None` if they are the same point.
     fn pull(self, a: DVec2) -> Option<DVec2> {
-        let back = self.at - a;
-        // Scaled first: the length of a tiny vector must not lose digits to underflow.
-        let size = back.abs().max_element();
-        (size > 0.0).then(|| back / size / (back / size).length())
+        pull(self.at, a)
     }
+}
+
+/// The unit vector from `a` to `at`; `None` if they are the same point.
+pub(super) fn pull(at: DVec2, a: DVec2) -> Option<DVec2> {
+    let back = at - a;
+    // Scaled first: the length of a tiny vector must not lose digits to underflow.
+    let size = back.abs().max_element();
+    (size > 0.0).then(|| back / size / (back / size).length())
 }
 
 /// Ropes with the same contacts, wherever the free end is.
@@ -269,7 +274,7 @@ impl Rope {
 }
 
 /// Whether a rope from `prior` over `here` to `next` passes `here` straight.
-fn is_straight(prior: DVec2, here: DVec2, next: DVec2) -> bool {
+pub(super) fn is_straight(prior: DVec2, here: DVec2, next: DVec2) -> bool {
     orient(prior, here, next) == 0.0 && forwards(prior, here, next)
 }
 

@@ -1,9 +1,10 @@
 //! Ropes after steps, column by column.
 
-use super::{RopeStep, Steps};
+use super::{EndsSteps, RopeStep, Steps};
 
 /// Ropes after steps as columns, one entry a step: all of the same length but `windings`, which has such a column for
-/// each centre. What is [`RopeStep`]'s, in the scene's unit.
+/// each centre, and `bx` and `by`, which are empty where the anchor does not move. What is [`RopeStep`]'s, in the
+/// scene's unit.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -35,6 +36,10 @@ pub struct StepColumns {
     pub x: Vec<f64>,
     /// And how high.
     pub y: Vec<f64>,
+    /// Where the anchor is, if it moves; empty if it does not.
+    pub bx: Vec<f64>,
+    /// And how high.
+    pub by: Vec<f64>,
     /// The taut rope's length.
     pub length: Vec<f64>,
     /// The number of its contacts.
@@ -76,17 +81,27 @@ impl StepColumns {
     pub fn take(&mut self, trace: u64, steps: &mut Steps<'_>, most: usize) -> bool {
         while self.len() < most {
             let Some(step) = steps.next() else { return true };
-            self.push(trace, &step);
-            let mut columns = self.windings.iter_mut();
-            for rounds in steps.windings() {
-                columns.next().expect("a column for each centre").push(rounds);
-            }
-            assert!(columns.next().is_none(), "a centre for each column");
+            self.push(trace, &step, steps.windings());
         }
         false
     }
 
-    fn push(&mut self, trace: u64, step: &RopeStep) {
+    /// The same where the anchor moves; columns are of traces of the one kind or of the other.
+    ///
+    /// # Panics
+    ///
+    /// As [`take`](Self::take).
+    pub fn take_ends(&mut self, trace: u64, steps: &mut EndsSteps<'_>, most: usize) -> bool {
+        while self.len() < most {
+            let Some((step, anchor)) = steps.next() else { return true };
+            self.bx.push(anchor.x);
+            self.by.push(anchor.y);
+            self.push(trace, &step, steps.windings());
+        }
+        false
+    }
+
+    fn push(&mut self, trace: u64, step: &RopeStep, windings: impl Iterator<Item = i64>) {
         let pull = step.pull.unwrap_or_default();
         self.trace.push(trace);
         self.step.push(step.step);
@@ -98,5 +113,10 @@ impl StepColumns {
         self.pull_x.push(pull.x);
         self.pull_y.push(pull.y);
         self.pulls.push(step.pull.is_some());
+        let mut columns = self.windings.iter_mut();
+        for rounds in windings {
+            columns.next().expect("a column for each centre").push(rounds);
+        }
+        assert!(columns.next().is_none(), "a centre for each column");
     }
 }

@@ -5,8 +5,8 @@
 
 use glam::DVec2;
 
-use super::{EventKind, Rope, Side};
-use crate::geometry::{TracePoint, forwards, left_of, orient, orient_step};
+use super::{EventKind, Side, Strand};
+use crate::geometry::{Resting, TracePoint, orient_step};
 
 /// A straight move of the free end, from `a0` to `a1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,9 +17,10 @@ pub struct Leg {
     pub a1: TracePoint,
 }
 
-/// How far the rope's last leg has turned while the free end moves along one [`Leg`].
+/// How far the rope's last leg has turned while the free end moves along one [`Leg`]. Where both ends move, it is the
+/// leg of the end that does, and `P` says what it turns about.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Sweep {
+pub enum Sweep<P = DVec2> {
     /// It still points at `a0`.
     #[default]
     Start,
@@ -28,7 +29,7 @@ pub enum Sweep {
         /// The way in which it turns during this leg: +1 counter-clockwise, -1 clockwise.
         dir: f64,
         /// Where the start line comes from.
-        x: DVec2,
+        x: P,
         /// The point through which it goes on: the vertex wrapped or unwrapped.
         y: DVec2,
         /// Whether the event was a wrap, so that `y` is the pivot; else `x` is.
@@ -44,7 +45,7 @@ struct Crossing {
     dir: f64,
 }
 
-impl Sweep {
+impl<P: Resting> Sweep<P> {
     /// Applies the next event of `leg` to `rope` and returns it, or `None` when the leg has no more.
     ///
     /// `candidates` are the indices into `vertices` that are tried; they must hold every vertex of the closed triangle
@@ -60,9 +61,9 @@ impl Sweep {
     /// assert_eq!(event, Some((EventKind::Wrap, 0, Side::Left)));
     /// assert_eq!(sweep.next(&mut rope, &leg, &[[1.0, 0.0].into()], [0]), None);
     /// ```
-    pub fn next(
+    pub fn next<S: Strand<Pivot = P>>(
         &mut self,
-        rope: &mut Rope,
+        rope: &mut S,
         leg: &Leg,
         vertices: &[DVec2],
         candidates: impl IntoIterator<Item = u32>,
@@ -78,19 +79,19 @@ impl Sweep {
             }
         }
         let x = rope.prior();
-        let unwrap = rope.contacts().last().and_then(|c| self.unwraps(x, o, c.side, leg));
+        let unwrap = rope.side().and_then(|side| self.unwraps(x, o.at(), side, leg));
         match (first, unwrap) {
             (None, None) => None,
-            (Some(c), unwrap) if unwrap.is_none_or(|dir| orient(x, o, c.at) * dir <= 0.0) => {
+            (Some(c), unwrap) if unwrap.is_none_or(|dir| x.orient(o.at(), c.at) * dir <= 0.0) => {
                 let side = Side::of(c.dir);
                 rope.push(c.vertex, c.at, side);
                 *self = Sweep::After { dir: c.dir, x: o, y: c.at, wrapped: true };
                 Some((EventKind::Wrap, c.vertex, side))
             }
             (_, Some(dir)) => {
-                let c = rope.pop()?;
-                *self = Sweep::After { dir, x, y: o, wrapped: false };
-                Some((EventKind::Unwrap, c.vertex, c.side))
+                let (vertex, side) = rope.pop()?;
+                *self = Sweep::After { dir, x, y: o.at(), wrapped: false };
+                Some((EventKind::Unwrap, vertex, side))
             }
             (Some(_), None) => unreachable!("a crossing without an unwrap is a wrap"),
         }
@@ -98,12 +99,12 @@ impl Sweep {
 
     /// The way in which the rope turns across the ray of the vertex at `p` from pivot `o`, if it still will.
     #[inline]
-    fn wraps(&self, o: DVec2, p: DVec2, leg: &Leg) -> Option<f64> {
+    fn wraps(&self, o: P, p: DVec2, leg: &Leg) -> Option<f64> {
         match *self {
             Sweep::Start => crosses(o, p, leg),
             Sweep::After { dir, x, y, wrapped } => {
-                let start = orient(x, y, p) * dir;
-                let comes_after = start > 0.0 || (start == 0.0 && wrapped && forwards(x, y, p));
+                let start = x.orient(y, p) * dir;
+                let comes_after = start > 0.0 || (start == 0.0 && wrapped && x.forwards(y, p));
                 (comes_after && is_past(o, p, leg, dir)).then_some(dir)
             }
         }
@@ -111,7 +112,7 @@ impl Sweep {
 
     /// The way in which the rope turns back across the ray of its pivot `o` from the prior `x`, if it still will.
     #[inline]
-    fn unwraps(&self, x: DVec2, o: DVec2, side: Side, leg: &Leg) -> Option<f64> {
+    fn unwraps(&self, x: P, o: DVec2, side: Side, leg: &Leg) -> Option<f64> {
         let back = -side.sign();
         match *self {
             Sweep::Start => crosses(x, o, leg).filter(|&dir| dir == back),
@@ -119,7 +120,7 @@ impl Sweep {
             // wall along which it lies). The unwrapping ray is then a half turn away, which no leg reaches; but a goal
             // on that very line would count as past it.
             Sweep::After { dir, x: pivot, y, .. } => {
-                let doubles_back = || orient(x, pivot, y) == 0.0 && !forwards(x, pivot, y);
+                let doubles_back = || x.orient(pivot.at(), y) == 0.0 && !x.forwards(pivot.at(), y);
                 (dir == back && is_past(x, o, leg, dir) && !doubles_back()).then_some(dir)
             }
         }
@@ -128,9 +129,9 @@ impl Sweep {
 
 /// Whether the leg crosses the ray that starts at `p` and goes away from `o`, and which way.
 #[inline]
-fn crosses(o: DVec2, p: DVec2, leg: &Leg) -> Option<f64> {
-    let after = left_of(o, p, leg.a1);
-    if left_of(o, p, leg.a0) == after {
+fn crosses<P: Resting>(o: P, p: DVec2, leg: &Leg) -> Option<f64> {
+    let after = o.left_of(p, leg.a1);
+    if o.left_of(p, leg.a0) == after {
         return None;
     }
     let dir = if after { 1.0 } else { -1.0 };
@@ -139,21 +140,22 @@ fn crosses(o: DVec2, p: DVec2, leg: &Leg) -> Option<f64> {
 
 /// Whether the free end's goal lies past the ray of `p` from `o` when turning by `dir`, and gets there beyond `p`.
 #[inline]
-fn is_past(o: DVec2, p: DVec2, leg: &Leg, dir: f64) -> bool {
-    left_of(o, p, leg.a1) == (dir > 0.0) && orient_step(leg.a0, leg.a1, p) * dir >= 0.0
+fn is_past<P: Resting>(o: P, p: DVec2, leg: &Leg, dir: f64) -> bool {
+    o.left_of(p, leg.a1) == (dir > 0.0) && orient_step(leg.a0, leg.a1, p) * dir >= 0.0
 }
 
 /// Whether the rope's last leg, turning about `o` by `dir`, meets the vertex at `p` before that at `q`: the nearer
 /// first where both lie on one line.
 #[inline]
-fn meets_before(o: DVec2, p: DVec2, q: DVec2, dir: f64) -> bool {
-    let order = orient(o, p, q) * dir;
-    order > 0.0 || (order == 0.0 && forwards(o, p, q))
+fn meets_before<P: Resting>(o: P, p: DVec2, q: DVec2, dir: f64) -> bool {
+    let order = o.orient(p, q) * dir;
+    order > 0.0 || (order == 0.0 && o.forwards(p, q))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rope::Rope;
 
     #[test]
     fn vertices_on_one_line_are_pushed_nearest_first() {

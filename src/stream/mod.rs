@@ -28,6 +28,7 @@
 //! ```
 
 mod batches;
+mod ends;
 mod error;
 mod evaluate;
 mod files;
@@ -37,6 +38,7 @@ mod report;
 mod statistics;
 
 pub use batches::{Batch, Batches, Source};
+pub use ends::{EndsFiles, EndsSource, EndsStage, evaluate_ends};
 pub use error::StreamError;
 pub use evaluate::{OnViolation, Stage, Times, evaluate};
 pub use files::Files;

@@ -1,10 +1,10 @@
 //! Some traces of a source, by their numbers.
 
-use super::Source;
+use super::{EndsSource, Source, StreamError};
 use crate::example::some_walks;
 use crate::read_error::ReadError;
 use crate::scene::Model;
-use crate::trace::{Trace, TraceReader};
+use crate::trace::{EndsTrace, Trace};
 
 /// How many traces, and points of them, are read at a time.
 const TRACES: usize = 8192;
@@ -16,6 +16,9 @@ pub enum PickError {
     /// They cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// They cannot be read with the paths of their anchors.
+    #[error(transparent)]
+    Ends(#[from] StreamError),
     /// The source has none.
     #[error("there are no traces in it")]
     Empty,
@@ -51,11 +54,9 @@ impl Source {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn pick(self, wanted: &[u64], model: &Model) -> Result<Vec<Trace>, PickError> {
-        let mut wanted = wanted.to_vec();
-        wanted.sort_unstable();
-        wanted.dedup();
+        let wanted = each_once(wanted);
         match self {
-            Source::File(reader) => find(reader, &wanted),
+            Source::File(mut reader) => find(|| reader.next_batch(TRACES, POINTS), |trace| trace.id, &wanted),
             Source::Walks(walker, numbers) => {
                 if numbers.is_empty() {
                     return Err(PickError::Empty);
@@ -70,19 +71,47 @@ impl Source {
     }
 }
 
-fn find(mut reader: TraceReader, wanted: &[u64]) -> Result<Vec<Trace>, PickError> {
-    let mut found: Vec<Trace> = Vec::new();
+impl EndsSource {
+    /// The same where both ends move: each trace with the points of its anchor.
+    ///
+    /// # Errors
+    ///
+    /// Files that cannot be read, and a number that no trace has.
+    pub fn pick(mut self, wanted: &[u64]) -> Result<Vec<EndsTrace>, PickError> {
+        find(|| self.next(TRACES), |both| both.free.id, &each_once(wanted))
+    }
+}
+
+/// The numbers in order, each once.
+fn each_once(wanted: &[u64]) -> Vec<u64> {
+    let mut wanted = wanted.to_vec();
+    wanted.sort_unstable();
+    wanted.dedup();
+    wanted
+}
+
+/// Those of the traces that come in batches whose numbers are `wanted`.
+fn find<T, E>(
+    mut next: impl FnMut() -> Result<Option<Vec<T>>, E>,
+    number: impl Fn(&T) -> u64,
+    wanted: &[u64],
+) -> Result<Vec<T>, PickError>
+where
+    PickError: From<E>,
+{
+    let mut found: Vec<T> = Vec::new();
     let mut range: Option<(u64, u64)> = None;
     while found.len() < wanted.len().max(1) {
-        let Some(batch) = reader.next_batch(TRACES, POINTS)? else { break };
+        let Some(batch) = next()? else { break };
         for trace in batch {
-            range = Some((range.map_or(trace.id, |r| r.0), trace.id));
-            if wanted.contains(&trace.id) || (wanted.is_empty() && found.is_empty()) {
+            let id = number(&trace);
+            range = Some((range.map_or(id, |r| r.0), id));
+            if wanted.contains(&id) || (wanted.is_empty() && found.is_empty()) {
                 found.push(trace);
             }
         }
     }
-    match (range, wanted.iter().find(|&&id| found.iter().all(|t| t.id != id))) {
+    match (range, wanted.iter().find(|&&id| found.iter().all(|t| number(t) != id))) {
         (None, _) => Err(PickError::Empty),
         (Some((first, last)), Some(&trace)) => Err(PickError::Missing { trace, first, last }),
         _ => Ok(found),

@@ -11,8 +11,8 @@ use serde::Serialize;
 use super::Times;
 use super::statistics::{Counts, Lengths, Statistics};
 use crate::engine::{Engine, Job};
-use crate::rope::{EventKind, TraceRecord};
-use crate::trace::SettledTrace;
+use crate::rope::{EndsRecord, EventKind, TraceRecord};
+use crate::trace::{SettledEnds, SettledTrace};
 use crate::trade::{Terms, Trade, Traded};
 
 /// A run in numbers. Traces that break the rules are counted in `traces`, `steps` and `still` only: their ropes may be
@@ -197,26 +197,38 @@ impl Account {
     pub fn add(&mut self, settled: &[SettledTrace], records: &[TraceRecord]) {
         for (trace, record) in settled.iter().zip(records) {
             self.traded.add(trace);
-            let report = &mut self.report;
-            report.traces += 1;
-            report.steps += record.steps;
-            report.still += trace.still() as u64;
-            if trace.violation().is_some() {
-                report.violations += 1;
-                continue;
-            }
-            let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count();
-            report.counted += 1;
-            report.counted_steps += record.steps;
-            report.wraps += wraps as u64;
-            report.unwraps += (record.events.len() - wraps) as u64;
-            self.length.add(record.length);
-            self.max_length.add(record.max_length);
-            self.depth.add(record.depth);
-            self.max_depth.add(record.max_depth);
-            if !self.labels.is_empty() {
-                self.touch(record);
-            }
+            self.count(trace.still(), trace.violation().is_some(), record);
+        }
+    }
+
+    /// The same for ropes whose ends both move: a step stands still where neither end moves. O(steps + events).
+    pub fn add_ends(&mut self, settled: &[SettledEnds], records: &[EndsRecord]) {
+        for (trace, record) in settled.iter().zip(records) {
+            self.count(trace.still(), trace.violation().is_some(), &record.record);
+        }
+    }
+
+    /// Counts a trace in, so many of whose steps stand still.
+    fn count(&mut self, still: usize, breaks_rules: bool, record: &TraceRecord) {
+        let report = &mut self.report;
+        report.traces += 1;
+        report.steps += record.steps;
+        report.still += still as u64;
+        if breaks_rules {
+            report.violations += 1;
+            return;
+        }
+        let wraps = record.events.iter().filter(|e| e.kind == EventKind::Wrap).count();
+        report.counted += 1;
+        report.counted_steps += record.steps;
+        report.wraps += wraps as u64;
+        report.unwraps += (record.events.len() - wraps) as u64;
+        self.length.add(record.length);
+        self.max_length.add(record.max_length);
+        self.depth.add(record.depth);
+        self.max_depth.add(record.max_depth);
+        if !self.labels.is_empty() {
+            self.touch(record);
         }
     }
 

@@ -102,6 +102,28 @@ impl<R: Read> CsvRows<R> {
         self.position
     }
 
+    /// Whether the rows say where the anchor is. Looks at the header without reading on; where there is none, or none
+    /// that will do, [`read`](Self::read) says so.
+    pub(super) fn moves_anchor(&mut self) -> Result<bool, ReadError> {
+        if self.header.is_none()
+            && let Input::Blocks(input, start) = &mut self.input
+        {
+            let (block, rest) = match whole_lines(input, std::mem::take(start), self.block) {
+                Ok((block, rest, _)) => (block, rest),
+                Err(cause) => {
+                    self.input = Input::Ended;
+                    return Err(ReadError::io(&self.path, cause));
+                }
+            };
+            *start = [block, rest].concat();
+            let mut first = ByteRecord::new();
+            let mut parser = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(&start[..]);
+            let found = parser.read_byte_record(&mut first).is_ok();
+            return Ok(found && Header::new(first.iter()).is_ok_and(|header| header.moves_anchor()));
+        }
+        Ok(self.header.as_ref().is_some_and(Header::moves_anchor))
+    }
+
     /// Reads the next rows; false when there are no more.
     pub(super) fn read(&mut self, gatherer: &mut Gatherer) -> Result<bool, ReadError> {
         match std::mem::replace(&mut self.input, Input::Ended) {

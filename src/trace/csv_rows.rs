@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::csv_lines::{LINE_MAX, LINE_TOO_LONG, first_line};
-use super::gather::{Gatherer, STEP};
+use super::gather::{ANCHOR, Gatherer, STEP};
 use crate::number::{NumberFault, VANISHES};
 
 /// The columns; the last may be missing.
@@ -16,6 +16,8 @@ const COLUMNS: [&str; 4] = ["trace", "x", "y", STEP];
 pub(super) struct Header {
     /// The fields in which trace, x, y and step stand; the last is beyond all of them where there are no steps.
     fields: [usize; 4],
+    /// Those in which it stands where the anchor is, if it moves.
+    anchor: Option<[usize; 2]>,
     /// How many fields each row has.
     width: usize,
 }
@@ -26,6 +28,7 @@ pub(super) struct Row {
     trace: u64,
     step: Option<u64>,
     point: DVec2,
+    anchor: Option<DVec2>,
 }
 
 /// Rows that have been read, up to the first fault.
@@ -35,6 +38,8 @@ pub(super) struct Chunk {
     /// One for each row, or none at all.
     steps: Vec<u64>,
     points: Vec<DVec2>,
+    /// One for each row, or none at all.
+    anchors: Vec<DVec2>,
     /// Where each row starts.
     bytes: Vec<u64>,
     /// What is wrong with the row after these, and where it starts.
@@ -45,8 +50,11 @@ impl Header {
     /// Finds the columns among the fields of the first row.
     pub(super) fn new<'a>(fields: impl Iterator<Item = &'a [u8]>) -> Result<Self, String> {
         let found: Vec<_> = fields.map(|name| String::from_utf8_lossy(name.trim_ascii())).collect();
-        let mut fields = [found.len(); 4];
-        for (field, column) in fields.iter_mut().zip(COLUMNS) {
+        let (mut fields, mut anchor) = ([found.len(); 4], [found.len(); 2]);
+        // Either alone is some other column.
+        let moves = ANCHOR.iter().all(|column| found.iter().any(|name| name == column));
+        let columns = COLUMNS.into_iter().chain(ANCHOR.into_iter().filter(|_| moves));
+        for (field, column) in fields.iter_mut().chain(&mut anchor).zip(columns) {
             let mut at = (0..found.len()).filter(|&i| found[i] == column);
             *field = match (at.next(), at.next()) {
                 (Some(i), None) => i,
@@ -59,22 +67,30 @@ impl Header {
                 }
             };
         }
-        Ok(Header { fields, width: found.len() })
+        Ok(Header { fields, anchor: moves.then_some(anchor), width: found.len() })
+    }
+
+    /// Whether rows say where the anchor is.
+    pub(super) fn moves_anchor(&self) -> bool {
+        self.anchor.is_some()
     }
 
     /// The numbers in one row's fields. Where these are not UTF-8, they come with replacement characters, which are no
     /// part of a number.
     pub(super) fn row<T: AsRef<str> + Default>(&self, fields: impl Iterator<Item = T>) -> Result<Row, String> {
-        let mut texts: [T; 4] = Default::default();
+        let (mut texts, mut anchors): ([T; 4], [T; 2]) = Default::default();
         let mut width = 0;
         for field in fields {
-            if let Some(column) = self.fields.iter().position(|&number| number == width) {
+            let is_here = |&number: &usize| number == width;
+            if let Some(column) = self.fields.iter().position(is_here) {
                 texts[column] = field;
+            } else if let Some(column) = self.anchor.and_then(|anchor| anchor.iter().position(is_here)) {
+                anchors[column] = field;
             }
             width += 1;
         }
         if width != self.width {
-            let semicolon = texts.iter().any(|text| text.as_ref().contains(';'));
+            let semicolon = texts.iter().chain(&anchors).any(|text| text.as_ref().contains(';'));
             let why = match width > self.width {
                 true => "; a decimal comma makes two fields of a number, so write 1.5, not 1,5",
                 false if semicolon => "; the fields are separated by semicolons here: write commas, and 1.5, not 1,5",
@@ -85,9 +101,14 @@ impl Header {
         }
         let [trace, x, y, step] = texts;
         let whole = |text, column| number(text, column, "a whole number from 0", |t| t.parse().ok());
+        let point = |x: &T, y: &T, [in_x, in_y]: [&str; 2]| {
+            Ok::<_, String>(DVec2::new(coordinate(x.as_ref(), in_x)?, coordinate(y.as_ref(), in_y)?))
+        };
+        let [bx, by] = anchors;
         Ok(Row {
             trace: whole(trace.as_ref(), "trace")?,
-            point: DVec2::new(coordinate(x.as_ref(), "x")?, coordinate(y.as_ref(), "y")?),
+            point: point(&x, &y, ["x", "y"])?,
+            anchor: if self.moves_anchor() { Some(point(&bx, &by, ANCHOR)?) } else { None },
             step: if self.fields[3] < width { Some(whole(step.as_ref(), STEP)?) } else { None },
         })
     }
@@ -119,10 +140,11 @@ impl Chunk {
     /// Adds the next row, which starts at `byte`, or its fault.
     pub(super) fn push(&mut self, byte: u64, row: Result<Row, String>) {
         match row {
-            Ok(Row { trace, step, point }) => {
+            Ok(Row { trace, step, point, anchor }) => {
                 self.ids.push(trace);
                 self.steps.extend(step);
                 self.points.push(point);
+                self.anchors.extend(anchor);
                 self.bytes.push(byte);
             }
             Err(what) => self.fault = Some((byte, what)),
@@ -143,7 +165,12 @@ impl Chunk {
     pub(super) fn gather(self, gatherer: &mut Gatherer) -> Result<(), (u64, String)> {
         let points = |rows: Range<usize>| self.points[rows].iter().copied();
         let steps = (!self.steps.is_empty()).then_some(&self.steps[..]);
-        gatherer.extend(&self.ids, steps, points).map_err(|(row, what)| (self.bytes[row], what))?;
+        let anchors = |rows: Range<usize>| self.anchors[rows].iter().copied();
+        let gathered = match self.anchors.is_empty() {
+            true => gatherer.extend(&self.ids, steps, points),
+            false => gatherer.extend_both(&self.ids, steps, points, anchors),
+        };
+        gathered.map_err(|(row, what)| (self.bytes[row], what))?;
         self.fault.map_or(Ok(()), Err)
     }
 }

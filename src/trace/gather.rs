@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::DVec2;
 
-use super::Trace;
+use super::{EndsTrace, Trace};
 use crate::geometry::{check_point, check_points};
 
 /// The most points for which room is made ahead in a trace whose end is not known yet.
@@ -14,9 +14,14 @@ const AHEAD: usize = 1 << 16;
 /// The column that may say which step of its trace a row is.
 pub(super) const STEP: &str = "step";
 
+/// The columns that may say where the anchor is.
+pub(super) const ANCHOR: [&str; 2] = ["bx", "by"];
+
 /// Rows on their way into traces.
 #[derive(Default)]
 pub(super) struct Gatherer {
+    /// The same rows on their way into the anchors' paths, where they say where the anchor is.
+    anchors: Option<Box<Gatherer>>,
     /// In order; rows to come may belong to the last.
     traces: VecDeque<Trace>,
     /// How many points they have together.
@@ -75,6 +80,25 @@ impl Gatherer {
         Ok(())
     }
 
+    /// [`extend`](Self::extend) with rows that say where the anchor is, too.
+    pub(super) fn extend_both<I>(
+        &mut self,
+        ids: &[u64],
+        steps: Option<&[u64]>,
+        points: impl Fn(Range<usize>) -> I,
+        anchors: impl Fn(Range<usize>) -> I,
+    ) -> Result<(), (usize, String)>
+    where
+        I: Iterator<Item = DVec2>,
+    {
+        self.extend(ids, steps, points)?;
+        let named = |(row, what): (usize, String)| match what.strip_prefix("column ") {
+            Some(what) => (row, format!("column b{what}")),
+            None => (row, what),
+        };
+        self.anchors.get_or_insert_default().extend(ids, None, anchors).map_err(named)
+    }
+
     /// The first of the next steps of the last trace that does not come after the one before it, and what is wrong with
     /// it.
     fn out_of_order(&mut self, steps: &[u64]) -> Option<(usize, String)> {
@@ -114,6 +138,15 @@ impl Gatherer {
         let batch: Vec<Trace> = self.traces.drain(..count).collect();
         self.points -= batch.iter().map(|t| t.points.len()).sum::<usize>();
         (!batch.is_empty()).then_some(batch)
+    }
+
+    /// The same with the points of each trace's anchor, of rows that say where that is.
+    pub(super) fn take_both(&mut self, traces: usize, points: usize, ended: bool) -> Option<Vec<EndsTrace>> {
+        // As many rows in the one as in the other, so as many traces.
+        let anchors = self.anchors.as_mut()?.take(traces, points, ended)?;
+        let free = self.take(traces, points, ended)?;
+        let both = |(free, anchor): (Trace, Trace)| EndsTrace { free, anchor: anchor.points };
+        Some(free.into_iter().zip(anchors).map(both).collect())
     }
 }
 

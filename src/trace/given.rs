@@ -12,3 +12,12 @@ pub struct Trace {
     /// The points; at least one. Each within the limits of [`check_point`](crate::geometry::check_point).
     pub points: Vec<DVec2>,
 }
+
+/// One trace of a rope whose ends both move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EndsTrace {
+    /// The trace of the free end.
+    pub free: Trace,
+    /// Where the anchor is after each of its steps: as many points.
+    pub anchor: Vec<DVec2>,
+}

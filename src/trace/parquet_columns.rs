@@ -12,18 +12,28 @@ use arrow_schema::{DataType, Schema};
 use parquet::basic::Compression;
 use parquet::file::metadata::ParquetMetaData;
 
-use super::gather::STEP;
+use super::gather::{ANCHOR, STEP};
 
-/// The columns; the last may be missing.
-const COLUMNS: [&str; 4] = ["trace", "x", "y", STEP];
+/// The columns; those from the fourth on may be missing.
+const COLUMNS: [&str; 6] = ["trace", "x", "y", STEP, ANCHOR[0], ANCHOR[1]];
+
+/// Whether rows say where the anchor is. Either of the two columns alone is some other one.
+pub(super) fn moves_anchor(schema: &Schema) -> bool {
+    ANCHOR.iter().all(|column| schema.fields().iter().any(|field| field.name() == column))
+}
 
 /// A fault with its row in the batch.
 type InRow = (usize, String);
 
+/// The columns that are read.
+fn read(moves_anchor: bool) -> impl Iterator<Item = &'static str> {
+    COLUMNS.into_iter().filter(move |name| moves_anchor || !ANCHOR.contains(name))
+}
+
 /// The numbers of the columns in a schema, whose types must fit.
 pub(super) fn find(schema: &Schema) -> Result<Vec<usize>, String> {
     let mut columns = Vec::new();
-    for name in COLUMNS {
+    for name in read(moves_anchor(schema)) {
         let mut found = (0..schema.fields().len()).filter(|&i| schema.field(i).name() == name);
         let number = match (found.next(), found.next()) {
             (Some(number), None) => number,
@@ -65,7 +75,7 @@ fn wrong_type(name: &str, kind: &DataType, whole: bool) -> String {
 }
 
 /// Refuses a compression that is not read here, before it looks like damage.
-pub(super) fn check_compression(metadata: &ParquetMetaData) -> Result<(), String> {
+pub(super) fn check_compression(metadata: &ParquetMetaData, moves_anchor: bool) -> Result<(), String> {
     for column in metadata.row_groups().iter().flat_map(|group| group.columns()) {
         let name = column.column_path().string();
         let by = match column.compression() {
@@ -73,7 +83,7 @@ pub(super) fn check_compression(metadata: &ParquetMetaData) -> Result<(), String
             Compression::LZO => "LZO",
             _ => continue,
         };
-        if COLUMNS.contains(&name.as_str()) {
+        if read(moves_anchor).any(|column| column == name) {
             let what = "which is not read here; write the file with zstd or snappy compression";
             return Err(format!("column {name} is compressed with {by}, {what}"));
         }

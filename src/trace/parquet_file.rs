@@ -1,14 +1,16 @@
 //! Traces as Parquet: columns `trace`, `x` and `y`, one row a point.
 
+use std::borrow::Cow;
 use std::fs::File;
+use std::ops::Range;
 
 use arrow_array::RecordBatch;
 use glam::DVec2;
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::{ArrowReaderOptions, ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
 
-use super::gather::{Gatherer, STEP};
-use super::parquet_columns::{check_compression, coordinates, find, whole};
+use super::gather::{ANCHOR, Gatherer, STEP};
+use super::parquet_columns::{check_compression, coordinates, find, moves_anchor, whole};
 use crate::caught::caught;
 use crate::read_error::{Fault, Place};
 
@@ -18,6 +20,7 @@ const BATCH: usize = 1 << 13;
 /// The rows of a file under way.
 pub(super) struct ParquetRows {
     batches: ParquetRecordBatchReader,
+    moves_anchor: bool,
     rows: u64,
     read: u64,
 }
@@ -31,14 +34,20 @@ impl ParquetRows {
             let builder = ParquetRecordBatchReaderBuilder::try_new_with_options(file, options)
                 .map_err(|e| damaged(Place::default(), e))?;
             let columns = find(builder.schema()).map_err(|what| Fault::new(Place::default(), what))?;
-            check_compression(builder.metadata()).map_err(|what| Fault::new(Place::default(), what))?;
+            let moves_anchor = moves_anchor(builder.schema());
+            check_compression(builder.metadata(), moves_anchor).map_err(|what| Fault::new(Place::default(), what))?;
             let mask = ProjectionMask::roots(builder.parquet_schema(), columns);
             let rows = builder.metadata().file_metadata().num_rows().try_into().unwrap_or(0);
             let builder = builder.with_projection(mask).with_batch_size(BATCH);
             let batches = builder.build().map_err(|e| damaged(Place::default(), e))?;
-            Ok(ParquetRows { batches, rows, read: 0 })
+            Ok(ParquetRows { batches, moves_anchor, rows, read: 0 })
         };
         caught(open).unwrap_or_else(|panic| Err(damaged(Place::default(), panic)))
+    }
+
+    /// Whether the rows say where the anchor is.
+    pub(super) fn moves_anchor(&self) -> bool {
+        self.moves_anchor
     }
 
     /// Reads the next rows; false when there are no more. Not to be called after an error.
@@ -47,7 +56,8 @@ impl ParquetRows {
         let mut read = || {
             let Some(batch) = self.batches.next() else { return Ok(0) };
             let batch = batch.map_err(|e| damaged(Place::row(first), e))?;
-            rows(&batch, gatherer).map_err(|(row, what)| Fault::new(Place::row(first + row as u64), what))?;
+            rows(&batch, self.moves_anchor, gatherer)
+                .map_err(|(row, what)| Fault::new(Place::row(first + row as u64), what))?;
             Ok(batch.num_rows())
         };
         let count = caught(&mut read).unwrap_or_else(|panic| Err(damaged(Place::default(), panic)))?;
@@ -71,12 +81,21 @@ fn damaged(place: Place, e: impl std::fmt::Display) -> Fault {
 }
 
 /// Adds a batch's rows; a fault comes with its row in the batch.
-fn rows(batch: &RecordBatch, gatherer: &mut Gatherer) -> Result<(), (usize, String)> {
+fn rows(batch: &RecordBatch, moves_anchor: bool, gatherer: &mut Gatherer) -> Result<(), (usize, String)> {
     let ids = whole(batch, "trace")?.ok_or_else(|| (0, "no column trace".to_owned()))?;
     let steps = whole(batch, STEP)?;
-    let [x, y] = [coordinates(batch, "x")?, coordinates(batch, "y")?];
-    let points = |rows: std::ops::Range<usize>| x[rows.clone()].iter().zip(&y[rows]).map(|(&x, &y)| DVec2::new(x, y));
-    gatherer.extend(&ids, steps.as_deref(), points)
+    let read = |[x, y]: [&str; 2]| Ok([coordinates(batch, x)?, coordinates(batch, y)?]);
+    let free = read(["x", "y"])?;
+    if !moves_anchor {
+        return gatherer.extend(&ids, steps.as_deref(), |rows| points(&free, rows));
+    }
+    let anchors = read(ANCHOR)?;
+    gatherer.extend_both(&ids, steps.as_deref(), |rows| points(&free, rows), |rows| points(&anchors, rows))
+}
+
+/// The points in some rows of two columns.
+fn points<'a>([x, y]: &'a [Cow<'a, [f64]>; 2], rows: Range<usize>) -> impl Iterator<Item = DVec2> + 'a {
+    x[rows.clone()].iter().zip(&y[rows]).map(|(&x, &y)| DVec2::new(x, y))
 }
 
 #[cfg(test)]

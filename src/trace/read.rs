@@ -3,11 +3,11 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use super::Trace;
 use super::csv_file::CsvRows;
 use super::gather::Gatherer;
 use super::parquet_file::ParquetRows;
-use crate::read_error::{ReadError, extension};
+use super::{EndsTrace, Trace};
+use crate::read_error::{Fault, Place, ReadError, extension};
 use crate::read_file::{open, special};
 
 /// Reads the traces in `path`: columns `trace` (a whole number from 0), `x` and `y`, as `.csv` or `.parquet`.
@@ -15,7 +15,8 @@ use crate::read_file::{open, special};
 /// Columns may stand in any order and among others. The rows of one trace follow each other, and the numbers of traces
 /// increase; they may leave gaps. Where there is a column `step` of whole numbers from 0, these increase within each
 /// trace. A file without rows has no traces. In Parquet, whole numbers may have any width, and coordinates may be
-/// floats or whole numbers: each is taken exactly. A pipe is read too, as CSV; devices are not.
+/// floats or whole numbers: each is taken exactly. Columns `bx` and `by` together say where the anchor is; such traces
+/// are refused here, see [`TraceReader::next_ends`]. A pipe is read too, as CSV; devices are not.
 ///
 /// # Errors
 ///
@@ -84,18 +85,60 @@ impl TraceReader {
     ///
     /// Contents that are not traces, with their line or row, and what the operating system says.
     pub fn next_batch(&mut self, traces: usize, points: usize) -> Result<Option<Vec<Trace>>, ReadError> {
-        while !self.ended && !self.gatherer.is_full(traces, points) {
-            let more = match &mut self.rows {
-                Rows::Csv(rows) => rows.read(&mut self.gatherer),
-                Rows::Parquet(rows) => rows.read(&mut self.gatherer).map_err(|fault| fault.in_file(&self.path)),
-            };
-            if more.is_err() {
-                self.gatherer = Gatherer::default();
-            }
-            self.ended = !matches!(more, Ok(true));
-            more?;
+        self.fill(traces, points)?;
+        if self.moves_anchor()? {
+            self.ended = true;
+            self.gatherer = Gatherer::default();
+            let what = "it has columns bx and by, so the rope's anchor moves, and only eval and draw take such traces; \
+                        leave these columns out for a rope that is tied";
+            return Err(Fault::new(Place::default(), what).in_file(&self.path));
         }
         Ok(self.gatherer.take(traces, points, self.ended))
+    }
+
+    /// Whether the rows say where the anchor is, in columns `bx` and `by`: then [`next_ends`](Self::next_ends) reads
+    /// them. Looks as far as the header.
+    ///
+    /// # Errors
+    ///
+    /// What the operating system says.
+    pub fn moves_anchor(&mut self) -> Result<bool, ReadError> {
+        match &mut self.rows {
+            Rows::Csv(rows) => rows.moves_anchor(),
+            Rows::Parquet(rows) => Ok(rows.moves_anchor()),
+        }
+    }
+
+    /// The same as [`next_batch`](Self::next_batch) where the anchor moves: each trace with the points of its anchor,
+    /// as many as it has itself. `None` where the rows do not say where the anchor is.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`next_batch`](Self::next_batch).
+    pub fn next_ends(&mut self, traces: usize, points: usize) -> Result<Option<Vec<EndsTrace>>, ReadError> {
+        self.fill(traces, points)?;
+        Ok(self.gatherer.take_both(traces, points, self.ended))
+    }
+
+    /// Reads until a batch is full.
+    fn fill(&mut self, traces: usize, points: usize) -> Result<(), ReadError> {
+        while !self.ended && !self.gatherer.is_full(traces, points) {
+            self.read()?;
+        }
+        Ok(())
+    }
+
+    /// Reads the next rows.
+    fn read(&mut self) -> Result<(), ReadError> {
+        let more = match &mut self.rows {
+            Rows::Csv(rows) => rows.read(&mut self.gatherer),
+            Rows::Parquet(rows) => rows.read(&mut self.gatherer).map_err(|fault| fault.in_file(&self.path)),
+        };
+        if more.is_err() {
+            self.gatherer = Gatherer::default();
+        }
+        self.ended = !matches!(more, Ok(true));
+        more.map(drop)
     }
 
     /// How large the file is: rows for Parquet, bytes for CSV (0 for a pipe).

@@ -9,6 +9,7 @@ mod corpus;
 mod decide;
 mod drag;
 mod drawings;
+mod ends;
 mod engine_table;
 mod examples;
 mod extremes;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use tautline::trace::read_traces;
+use tautline::trace::{TraceReader, read_traces};
 
 fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/traces").join(format!("{name}.parquet"))
@@ -54,5 +54,44 @@ fn columns_that_are_not_read_are_named_as_what_they_are() {
     ] {
         let path = file(name);
         assert_eq!(read_traces(&path).unwrap_err().to_string(), format!("{}: {expected}", path.display()));
+    }
+}
+
+#[test]
+fn columns_of_an_anchor_are_read_beside_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.csv");
+    let rows = "0,1,2,3,4\n0,1,2,5,6\n\n4,7,8,-0,1e3\n";
+    let quoted = rows.replace("0,1,2,3", "\"0\",1,2,\"3\"");
+    for text in [
+        format!("trace,x,y,bx,by\n{rows}"),
+        format!("\u{feff}\n trace , x,y,bx,by\r\n{}", rows.replace('\n', "\r\n")),
+        format!("trace,x,y,bx,by\n{quoted}"),
+        format!("\"trace\",x,y,\"bx\",by\n{quoted}"),
+    ] {
+        std::fs::write(&path, &text).unwrap();
+        let mut reader = TraceReader::open(&path).unwrap();
+        assert!(reader.moves_anchor().unwrap() && reader.moves_anchor().unwrap(), "{text}");
+        // Trace by trace.
+        let mut read = Vec::new();
+        while let Some(batch) = reader.next_ends(1, 9).unwrap() {
+            assert_eq!(batch.len(), 1);
+            let points = |points: &[glam::DVec2]| points.iter().map(|p| p.to_array()).collect::<Vec<_>>();
+            read.extend(batch.into_iter().map(|both| (both.free.id, points(&both.free.points), points(&both.anchor))));
+        }
+        let first = (0, vec![[1.0, 2.0]; 2], vec![[3.0, 4.0], [5.0, 6.0]]);
+        assert_eq!(read, [first, (4, vec![[7.0, 8.0]], vec![[0.0, 1e3]])], "{text}");
+        assert!(read[1].2[0][0].is_sign_positive());
+        // Who reads them as traces of ropes that are tied is told.
+        let error = read_traces(&path).unwrap_err().to_string();
+        assert!(error.contains("it has columns bx and by, so the rope's anchor moves"), "{error}");
+    }
+    // Without both columns there is nothing to be had, and all is as ever.
+    for header in ["trace,x,y,bx,b", "trace,x,y,by,by"] {
+        std::fs::write(&path, format!("{header}\n{rows}")).unwrap();
+        let mut reader = TraceReader::open(&path).unwrap();
+        assert!(!reader.moves_anchor().unwrap());
+        assert_eq!(reader.next_ends(9, 9).unwrap(), None);
+        assert_eq!(reader.next_batch(9, 9).unwrap().map(|traces| traces.len()), Some(2));
     }
 }

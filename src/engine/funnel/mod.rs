@@ -32,6 +32,7 @@ pub static FUNNEL: EngineKind = EngineKind {
     about: "Another method: triangulation, crossing word, funnel",
     precisions: &[Precision::Certified],
     asks: false,
+    both_ends: false,
     promise: Promise::Ropes,
     open: Open::Threads(|model, _| Box::new(Funnel::new(model))),
 };

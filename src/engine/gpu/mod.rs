@@ -25,6 +25,7 @@ pub static GPU: EngineKind = EngineKind {
     about: "A compute shader takes many traces along at once, the CPU decides what it is not certain of",
     precisions: &[Precision::Certified, Precision::Fast],
     asks: true,
+    both_ends: false,
     promise: Promise::Events,
     open: Open::Device(|device, model, options| {
         Ok(match options.precision {

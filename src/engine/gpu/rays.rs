@@ -21,6 +21,7 @@ pub static GPU_RAYS: EngineKind = EngineKind {
     about: "A compute shader tries every wall end in every step, the CPU pushes and pops: a measure of throughput",
     precisions: &[Precision::Certified],
     asks: false,
+    both_ends: false,
     promise: Promise::Events,
     open: Open::Device(|device, model, _| Ok(Box::new(GpuRays::new(device, model)?))),
 };

@@ -18,6 +18,7 @@ pub static GPU_WINDOWS: EngineKind = EngineKind {
     about: "A compute shader finds candidates, window by window, the CPU decides all events",
     precisions: &[Precision::Certified],
     asks: true,
+    both_ends: false,
     promise: Promise::Events,
     open: Open::Device(|device, model, options| Ok(Box::new(GpuWindows::new(device, model)?.window(options.window)))),
 };

@@ -17,6 +17,14 @@ pub enum DrawError {
         /// How many traces there are.
         traces: usize,
     },
+    /// What was asked for has the anchor stay where it is.
+    #[error("{what} is of a rope that is tied, and in trace {trace} the anchor moves: draw it after a step")]
+    AnchorMoves {
+        /// What was asked for.
+        what: &'static str,
+        /// The trace's number.
+        trace: u64,
+    },
     /// There are more traces than can be told apart.
     #[error("{traces} traces in one picture cannot be told apart; at most {most} can")]
     TooManyTraces {

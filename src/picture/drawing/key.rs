@@ -14,6 +14,8 @@ pub(super) enum Entry {
     FreeEnd,
     /// The trace as a line, where that stands for it; or what of it has been made.
     Trace,
+    /// The way of an anchor that moves.
+    AnchorTrace,
     /// Every how many of its points are drawn.
     Points(usize),
     ToCome,
@@ -89,6 +91,7 @@ impl Entry {
             Entry::Anchor => "anchor".into(),
             Entry::FreeEnd => "free end".into(),
             Entry::Trace => "trace".into(),
+            Entry::AnchorTrace => "trace of the anchor".into(),
             Entry::Points(1) => "points of the trace".into(),
             Entry::Points(n) => format!("every {}{} point of the trace", count(n as u64), ordinal(n)),
             Entry::ToCome => "trace still to come".into(),
@@ -114,6 +117,7 @@ impl Entry {
             Entry::Anchor => anchor_mark(svg, theme, middle),
             Entry::FreeEnd => free_end_mark(svg, theme, middle, Tone::Ink),
             Entry::Trace => line(svg, own(Tone::Trace(0)), "stroke-width=\"1.2\""),
+            Entry::AnchorTrace => line(svg, own(Tone::Trace(1)), "stroke-width=\"1.2\""),
             Entry::Points(_) => point_mark(svg, theme, middle, own(Tone::Trace(0))),
             Entry::ToCome => line(svg, own(Tone::Trace(0)), "stroke-width=\"1.2\" stroke-opacity=\".35\""),
             Entry::Rope => line(svg, Tone::Ink, DASHES),

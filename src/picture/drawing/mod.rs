@@ -17,9 +17,9 @@ mod trace;
 use glam::DVec2;
 
 use super::plane::View;
-use crate::rope::{Moment, TraceRecord, moments};
+use crate::rope::{EndsRecord, Moment, TraceRecord, moments};
 use crate::scene::{Model, Scene};
-use crate::trace::SettledTrace;
+use crate::trace::{End, SettledEnds, SettledTrace};
 
 pub use error::DrawError;
 pub use strip::MOST_FRAMES;
@@ -91,6 +91,8 @@ struct Dragged<'a> {
     points: Vec<DVec2>,
     /// The first step that breaks the rules.
     crossing: Option<usize>,
+    /// Where the anchor is after every step, and what the rope did at which end, if both move.
+    both: Option<(Vec<DVec2>, &'a EndsRecord)>,
 }
 
 impl<'a> Drawing<'a> {
@@ -120,6 +122,20 @@ impl<'a> Drawing<'a> {
             record,
             points: trace.ends().into_owned(),
             crossing: trace.violation().map(|v| v.step),
+            both: None,
+        });
+        self
+    }
+
+    /// With the paths of both ends of a rope, and the rope; for pictures of one moment. Both must be of the drawing's
+    /// scene. O(points).
+    #[must_use]
+    pub fn with_ends(mut self, trace: &SettledEnds, record: &'a EndsRecord) -> Self {
+        self.dragged.push(Dragged {
+            record: &record.record,
+            points: trace.path(End::Free).ends().into_owned(),
+            crossing: trace.violation().map(|(_, v)| v.step),
+            both: Some((trace.path(End::Anchor).ends().into_owned(), record)),
         });
         self
     }
@@ -160,9 +176,15 @@ impl<'a> Drawing<'a> {
     fn one(&self, what: &'static str) -> Result<&Dragged<'a>, DrawError> {
         match self.dragged.as_slice() {
             [] => Err(DrawError::NoTrace { what }),
+            [one] if one.both.is_some() => Err(DrawError::AnchorMoves { what, trace: one.record.trace }),
             [one] => Ok(one),
             more => Err(DrawError::OneTrace { what, traces: more.len() }),
         }
+    }
+
+    /// Where ropes are tied; nowhere if the anchors of all move.
+    fn tied(&self) -> Option<DVec2> {
+        self.anchor.filter(|_| self.dragged.is_empty() || self.dragged.iter().any(|d| d.both.is_none()))
     }
 
     /// The moment of a trace that is shown.
@@ -171,6 +193,10 @@ impl<'a> Drawing<'a> {
         let step = self.step.unwrap_or(steps);
         if step > steps {
             return Err(DrawError::Step { trace: dragged.record.trace, step, steps });
+        }
+        if let Some((anchors, record)) = &dragged.both {
+            let rope = record.rope_after(self.scene.vertices(), anchors[step], step);
+            return Ok(Moment { step, share: 1.0, at: dragged.points[step], event: None, rope });
         }
         let mut shown = None;
         self.moments(dragged, &dragged.points[..=step], |m| {
@@ -199,7 +225,11 @@ impl<'a> Drawing<'a> {
             return Ok(View { low, high }.widened(0.0, 12.0));
         }
         // A taut rope does not leave the box around its trace and the anchor.
-        let near = || self.dragged.iter().flat_map(|d| d.points.iter().copied()).chain(self.anchor);
+        let near = || {
+            let both = |d: &Dragged<'_>| d.both.iter().flat_map(|b| b.0.clone()).collect::<Vec<_>>();
+            let dragged = self.dragged.iter().flat_map(move |d| d.points.iter().copied().chain(both(d)));
+            dragged.chain(self.tied())
+        };
         let all = || self.scene.vertices().iter().copied().chain(near());
         let unit = View { low: DVec2::ZERO, high: DVec2::ONE };
         let view = match self.part {

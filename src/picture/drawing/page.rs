@@ -27,7 +27,7 @@ const CORNERS: usize = 400_000;
 
 impl Drawing<'_> {
     /// A page that plays the one trace of this drawing in a browser, with a button and a slider; with no trace or
-    /// several, a page that shows [`svg`](Self::svg). It needs no other file and no network.
+    /// several, or where the anchor moves, a page that shows [`svg`](Self::svg). It needs no other file and no network.
     ///
     /// It begins at the moment after [`at_step`](Self::at_step), and by itself if there is none. Without scripts it
     /// shows the picture of that moment.
@@ -37,7 +37,7 @@ impl Drawing<'_> {
     /// Those of [`svg`](Self::svg).
     pub fn page(&self) -> Result<String, DrawError> {
         match self.dragged.as_slice() {
-            [one] => self.player(one),
+            [one] if one.both.is_none() => self.player(one),
             _ => Ok(page(self.theme, "Ropes", &figure(&self.svg()?))),
         }
     }

@@ -39,26 +39,32 @@ impl Drawing<'_> {
         let (mut inside, mut key) = (Svg::part(), Key::default());
         let mut canvas = Canvas { svg: &mut inside, frame: plot.frame, theme: self.theme, key: &mut key };
         canvas.walls(self.scene);
-        if let ([(_, moment)], Some(model)) = (shown.as_slice(), self.model) {
+        if let ([(Dragged { both: None, .. }, moment)], Some(model)) = (shown.as_slice(), self.model) {
             canvas.rays(model, moment, self.rays.unwrap_or(RAYS));
         }
         let alone = shown.len() == 1;
         for (i, (dragged, moment)) in shown.iter().enumerate() {
             let style = TraceStyle { tone: Tone::Trace(i), points: alone };
             canvas.trace(&dragged.points, moment.step + 1, moment.at, &style);
+            if let Some((anchors, _)) = &dragged.both {
+                let tone = if alone { Tone::Trace(1) } else { style.tone };
+                canvas.anchor_trace(anchors, moment.step + 1, &TraceStyle { tone, ..style });
+            }
         }
         for (i, (dragged, moment)) in shown.iter().enumerate() {
             let tone = if alone { Tone::Ink } else { Tone::Trace(i) };
             let turns = if alone { [Tone::Left, Tone::Right] } else { [tone; 2] };
-            let anchor = self.anchor.unwrap_or_default();
+            let moved = dragged.both.as_ref().map(|(anchors, _)| anchors[moment.step]);
+            let anchor = moved.or(self.anchor).unwrap_or_default();
             let shape = Shape::new(anchor, moment);
             canvas.rope(&shape, &RopeStyle { tone, turns, numbers: alone });
             canvas.free_end(moment.at, anchor, tone);
+            moved.into_iter().for_each(|anchor| canvas.anchor(anchor));
             if !alone {
                 canvas.key.add(Entry::Several(i, dragged.record.trace));
             }
         }
-        self.anchor.into_iter().for_each(|anchor| canvas.anchor(anchor));
+        self.tied().into_iter().for_each(|anchor| canvas.anchor(anchor));
         Ok(plot.finish(self.theme, &heading(&shown), inside, &key))
     }
 }

@@ -30,13 +30,22 @@ pub(super) struct TraceStyle {
 impl Canvas<'_> {
     /// A trace through `points`, of which `made` lie behind the free end at `a`; the others are still to come.
     pub(super) fn trace(&mut self, points: &[DVec2], made: usize, a: DVec2, style: &TraceStyle) {
+        self.way(points, made, a, style, Entry::Trace);
+    }
+
+    /// The same of an anchor that moves.
+    pub(super) fn anchor_trace(&mut self, points: &[DVec2], made: usize, style: &TraceStyle) {
+        self.way(points, made, points[made - 1], style, Entry::AnchorTrace);
+    }
+
+    fn way(&mut self, points: &[DVec2], made: usize, a: DVec2, style: &TraceStyle, is: Entry) {
         let here = self.at(a);
         let ways: Vec<[f64; 2]> = points.iter().map(|&p| self.at(p)).collect();
         let (behind, ahead) = ways.split_at(made);
         let stroke = self.theme.stroke(style.tone);
         let behind: Vec<_> = behind.iter().copied().chain([here]).collect();
         let ahead: Vec<_> = std::iter::once(here).chain(ahead.iter().copied()).collect();
-        for (part, opacity, entry) in [(&ahead, ".35", Entry::ToCome), (&behind, ".9", Entry::Trace)] {
+        for (part, opacity, entry) in [(&ahead, ".35", Entry::ToCome), (&behind, ".9", is)] {
             let line = thinned(part);
             let data = self.line(&line);
             if !data.is_empty() {

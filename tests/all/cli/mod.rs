@@ -8,6 +8,7 @@ mod chosen;
 mod convert;
 mod describe;
 mod draw;
+mod ends;
 mod engines;
 mod extremes;
 mod faults;
