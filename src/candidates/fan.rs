@@ -84,7 +84,7 @@ impl Fan {
 
     /// How many rays it has, at least 4.
     #[inline]
-    pub fn len(&self) -> usize {
+    pub fn rays(&self) -> usize {
         self.ways.len()
     }
 
@@ -109,20 +109,20 @@ impl Fan {
     /// The ray after ray `i`, counter-clockwise.
     #[inline]
     pub fn after(&self, i: usize) -> usize {
-        if i + 1 < self.len() { i + 1 } else { 0 }
+        if i + 1 < self.rays() { i + 1 } else { 0 }
     }
 
     /// The ray before ray `i`.
     #[inline]
     pub fn before(&self, i: usize) -> usize {
-        if i > 0 { i - 1 } else { self.len() - 1 }
+        if i > 0 { i - 1 } else { self.rays() - 1 }
     }
 
     /// The last ray that certainly lies clockwise of `way`, with the next certainly counter-clockwise of it; `None` if
     /// that is not certain. O(log rays).
     pub fn locate(&self, way: DVec2) -> Option<usize> {
         let key = key(way) as f32;
-        let mut next = self.keys.partition_point(|&k| k < key) % self.len();
+        let mut next = self.keys.partition_point(|&k| k < key) % self.rays();
         // Rounded keys may be out of order; a few rays are tried.
         for _ in 0..4 {
             let last = self.before(next);
@@ -143,7 +143,7 @@ impl Fan {
     pub fn ray_along(&self, way: DVec2) -> Option<usize> {
         let key = key(way) as f32;
         let from = self.keys.partition_point(|&k| k < key);
-        (from..self.len()).take_while(|&i| self.keys[i] <= key).find(|&i| self.ways[i] == way)
+        (from..self.rays()).take_while(|&i| self.keys[i] <= key).find(|&i| self.ways[i] == way)
     }
 
     /// The memory that it takes for each vertex, in bytes.

@@ -57,7 +57,7 @@ impl Grid {
             NO_VERTEX => (fan.way(i) * ENDLESS).as_vec2().to_array(),
             _ => self.way(fan.way(i)),
         };
-        (0..fan.len()).map(way).collect()
+        (0..fan.rays()).map(way).collect()
     }
 
     /// A length in the scene's unit that is no less than the true distance, from the square of a distance between points

@@ -198,9 +198,7 @@ fn ropes_may_be_deeper_than_the_stack() {
     points.extend((0..120).map(turn));
     points.extend((0..120).rev().map(turn));
     points.extend([corner(9.0, -2.0), corner(9.0, -3.6), model.anchor()]);
-    let trace = |id: u64, drop: usize| {
-        settle(&model, &Trace { id, points: points[..points.len() - drop].to_vec() })
-    };
+    let trace = |id: u64, drop: usize| settle(&model, &Trace { id, points: points[..points.len() - drop].to_vec() });
     let traces: Vec<_> = (0..64).map(|id| trace(id, 2 * id as usize)).collect();
     assert!(traces.iter().all(|t| !t.breaks_rules()));
     let truth = truth(&model, &traces);

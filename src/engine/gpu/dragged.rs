@@ -113,7 +113,7 @@ impl<'a> Slot<'a> {
         let pivot = model.pivot(rope.contacts().last().map(|c| c.vertex));
         let Some(list) = shared.lists.of(pivot, f64::INFINITY) else { return true };
         let Some(fan) = list.fan(model, rope.pivot()) else { return true };
-        pass.bring_fan(pivot.index(), &shared.grid.fan(fan), (0..fan.len()).map(|i| fan.vertex(i)))
+        pass.bring_fan(pivot.index(), &shared.grid.fan(fan), (0..fan.rays()).map(|i| fan.vertex(i)))
     }
 
     /// Takes the trace as far as the device took it, and a bit further where that was not certain of what comes next.

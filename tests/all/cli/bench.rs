@@ -42,7 +42,9 @@ fn all_engines_stand_side_by_side() {
         assert_eq!(row["batch"], 6, "{row}");
         match (row["engine"].as_str(), row["variant"].as_str()) {
             (Some("gpu-rays"), _) => assert_eq!(row["remaining"], 80, "{row}"),
-            (Some("gpu" | "gpu-windows" | "cpu"), _) => assert!((1..=80).contains(&row["remaining"].as_u64().unwrap()), "{row}"),
+            (Some("gpu" | "gpu-windows" | "cpu"), _) => {
+                assert!((1..=80).contains(&row["remaining"].as_u64().unwrap()), "{row}")
+            }
             _ => assert!(row["remaining"].is_null(), "{row}"),
         }
         let [traces, steps, threads] = ["traces", "steps", "threads"].map(|key| row[key].as_u64().unwrap());
