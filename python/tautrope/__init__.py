@@ -23,8 +23,9 @@ from ._errors import EngineError, InputError, ReadError, StudyError, TautropeErr
 from ._live import Event, LiveRope
 from ._ropes import Ropes
 from ._scene import Scene, Violation
-from ._study import Answer, Estimate, Study
-from ._table import Table
+from ._study import Answer, Estimate, Study, status
+from ._sweep import Sweep, SweepAnswer
+from ._table import StepStream, Table
 from ._tautrope import __version__
 
 __all__ = [
@@ -37,14 +38,18 @@ __all__ = [
     "ReadError",
     "Ropes",
     "Scene",
+    "StepStream",
     "Study",
     "StudyError",
+    "Sweep",
+    "SweepAnswer",
     "Table",
     "TautropeError",
     "Violation",
     "ViolationError",
     "WriteError",
     "__version__",
+    "status",
 ]
 
 # As the program does: keeps Mesa's Vulkan layer that sorts devices by window system from complaining on stderr where

@@ -18,6 +18,7 @@ import numpy as np
 
 from . import _tautrope as _core
 from ._errors import InputError, StudyError
+from ._ropes import Ropes
 from ._scene import Scene
 from ._table import Table
 
@@ -26,6 +27,9 @@ Progress = Callable[[int, int], Any]
 
 #: What a scene of one's own is called in a study's folder.
 _SCENE = "scene.geojson"
+
+#: What a sweep's folder has, and no other.
+_SWEEP = "sweep.json"
 
 
 class Estimate(NamedTuple):
@@ -77,6 +81,22 @@ class Study:
     True
     """
 
+    def __new__(
+        cls,
+        plan: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+        *,
+        base: str | os.PathLike[str] | None = None,
+        **sections: Any,
+    ) -> Study:
+        """A plan with a section ``sweep`` makes a `Sweep`."""
+        is_file = plan is not None and not isinstance(plan, Mapping)
+        is_swept = _core.has_sweep(Path(plan)) if is_file else "sweep" in {**(plan or {}), **sections}  # type: ignore
+        if cls is Study and is_swept:
+            from ._sweep import Sweep
+
+            return object.__new__(Sweep)
+        return object.__new__(cls)
+
     def __init__(
         self,
         plan: Mapping[str, Any] | str | os.PathLike[str] | None = None,
@@ -86,34 +106,50 @@ class Study:
     ) -> None:
         #: Where a study without a folder of its own is run; it goes with the study and its answers.
         self._room: tempfile.TemporaryDirectory[str] | None = None
+        #: The text of a scene that is no file of the user's.
         self._scene: str | None = None
         if plan is not None and not isinstance(plan, Mapping):
             if sections or base is not None:
                 raise InputError("give a study's file, or its sections, not both")
-            self._core = _core.Study.of_file(Path(plan))
+            #: From where its files are named.
+            self._base = Path(plan).absolute().parent
+            self._open_file(Path(plan))
             return
         whole = {**(plan or {}), **sections}
-        folder = Path(base) if base is not None else Path.cwd()
+        self._base = Path(base).absolute() if base is not None else Path.cwd()
         if isinstance(whole.get("scene"), str):
             whole["scene"] = {"built_in": whole["scene"]}
         if isinstance(whole.get("scene"), Scene):
+            whole["scene"] = self._take(whole["scene"])
+        self._open(whole)
+
+    def _take(self, scene: Scene) -> dict[str, Any]:
+        """Keeps a scene of one's own, and says where it is."""
+        self._room = tempfile.TemporaryDirectory(prefix="tautrope-")
+        self._base = Path(self._room.name)
+        scene.write(self._base / _SCENE)
+        self._scene = (self._base / _SCENE).read_text()
+        return {"file": _SCENE}
+
+    def _keep(self, base: str, scene: str | None) -> None:
+        """What a pickle says of where files are."""
+        self._room, self._scene, self._base = None, scene, Path(base)
+        if scene is not None:
             self._room = tempfile.TemporaryDirectory(prefix="tautrope-")
-            folder = Path(self._room.name)
-            file = folder / _SCENE
-            whole["scene"].write(file)
-            self._scene = file.read_text()
-            whole["scene"] = {"file": _SCENE}
-        try:
-            text = json.dumps(whole, default=_plain)
-        except TypeError as error:
-            raise StudyError(f"the plan: {error}") from None
-        self._core = _core.Study.of_text(text, True, folder)
+            self._base = Path(self._room.name)
+            (self._base / _SCENE).write_text(scene)
+
+    def _open_file(self, path: Path) -> None:
+        self._core = _core.Study.of_file(path)
+
+    def _open(self, plan: dict[str, Any]) -> None:
+        self._core = _core.Study.of_text(_json(plan), True, self._base)
 
     @classmethod
     def example(cls) -> Study:
         """The study that ``tautline study run`` runs without a file."""
-        study = cls.__new__(cls)
-        study._room, study._scene = None, None
+        study = object.__new__(Study)
+        study._room, study._scene, study._base = None, None, Path.cwd()
         study._core = _core.Study.of_text(_core.example_study(), False, Path.cwd())
         return study
 
@@ -144,15 +180,18 @@ class Study:
             progress: Whether to say on stderr how far it is; or a function that is told the steps done and of how many.
             engine: ``cpu``, ``gpu`` or ``reference``; without it the one that suits the machine.
         """
-        if out is None:
-            if self._room is None:
-                self._room = tempfile.TemporaryDirectory(prefix="tautrope-")
-            folder = Path(self._room.name, "study")
-        else:
-            folder = Path(out)
+        folder, room = self._place(out)
         with _Said(progress) as said:
             _warn(self._core.run(folder, engine, said, self._scene))
-        return Answer(folder, self._room if out is None else None)
+        return Answer(folder, room)
+
+    def _place(self, out: str | os.PathLike[str] | None) -> tuple[Path, Any]:
+        """The folder to run in, and what keeps it for as long as it is needed."""
+        if out is not None:
+            return Path(out), None
+        if self._room is None:
+            self._room = tempfile.TemporaryDirectory(prefix="tautrope-")
+        return Path(self._room.name, "study"), self._room
 
     @staticmethod
     def resume(
@@ -162,7 +201,8 @@ class Study:
         progress: bool | Progress = True,
         engine: str | None = None,
     ) -> Answer:
-        """Goes on with the study in a folder, whatever program began it, and returns the answer.
+        """Goes on with the study in a folder, whatever program began it, and returns the answer: with a sweep's folder
+        a `SweepAnswer`.
 
         Args:
             folder: The study's folder.
@@ -171,9 +211,16 @@ class Study:
             engine: As for `run`.
         """
         place = Path(folder)
+        if (place / _SWEEP).exists():
+            from ._sweep import Sweep
+
+            return Sweep.resume(place, base=base, progress=progress, engine=engine)  # type: ignore[return-value]
         with _Said(progress) as said:
             _warn(_core.resume_study(place, _base(place, base), engine, said))
         return Answer(place)
+
+    def __reduce__(self) -> Any:
+        return _restored_study, (self._core.plan, str(self._base), self._scene)
 
     def __repr__(self) -> str:
         plan = self.plan
@@ -191,6 +238,8 @@ class Answer:
         self.folder = Path(folder)
         self._room = room
         file = self.folder / "summary.json"
+        if (self.folder / _SWEEP).exists():
+            raise StudyError(f"{self.folder} holds a sweep; SweepAnswer opens it")
         if file.exists():
             self._text = file.read_text()
         else:
@@ -324,6 +373,48 @@ class Answer:
         }
         return _frame(rows, "vertex")
 
+    @property
+    def anchors(self) -> Any:
+        """What the ropes of each anchor say, and by how much that differs from the first anchor's: a DataFrame of
+        pandas by the anchor's number and the quantity; only of studies with ``tallies = {"anchors": True}``.
+
+        ``x`` and ``y`` are where the anchor is, ``traces`` is how many traces start from it. Quantities are those of
+        `scalars`, whose mean is told, and ``within_LIMIT`` for each of ``tallies.limits``: the share of ropes that
+        never were longer. ``difference`` is positive where the anchor has more of it than the first one; 0 outside of
+        its interval, ``difference_low`` to ``difference_high``, means that they differ.
+        """
+        rows = {}
+        for number, anchor in enumerate(self._anchors()):
+            at = {"x": anchor["at"][0], "y": anchor["at"][1], "traces": anchor["traces"]}
+            told = anchor["differences"] or {"scalars": [], "within": []}
+            against = {d["name"]: d["mean"] for d in told["scalars"]}
+            against |= {_within(d["limit"]): d["share"] for d in told["within"]}
+            values = {s["name"]: s["mean"] for s in anchor["scalars"]}
+            values |= {_within(w["limit"]): w["share"] for w in anchor["within"]}
+            for name, value in values.items():
+                difference = against.get(name) or {}
+                parts = {f"difference{end}": difference.get(key) for end, key in _PARTS.items()}
+                rows[number, name] = {**at, **value, **parts}
+        return _frame(rows, ["anchor", "name"])
+
+    @property
+    def anchor_quantiles(self) -> Any:
+        """Below which value each share of an anchor's traces lies, with its interval: a DataFrame of pandas by the
+        anchor's number, the quantity and the share; as `anchors`."""
+        rows = {
+            (number, s["name"], q["share"]): {key: q["value"][key] for key in ("value", "low", "high")}
+            for number, anchor in enumerate(self._anchors())
+            for s in anchor["scalars"]
+            for q in s["quantiles"]
+        }
+        return _frame(rows, ["anchor", "name", "share"])
+
+    def _anchors(self) -> list[dict[str, Any]]:
+        found: list[dict[str, Any]] | None = self.summary.get("anchors")
+        if found is None:
+            raise StudyError('the study does not tell its anchors apart; give it tallies={"anchors": True}')
+        return found
+
     @cached_property
     def map(self) -> Any:
         """The plane, cell by cell: a Dataset of xarray, or where that is not installed a dict of arrays.
@@ -359,10 +450,32 @@ class Answer:
     @cached_property
     def traces(self) -> Table:
         """One row a trace, as those of `Ropes`; only of studies with ``outputs = {"traces": True}``."""
-        file = self.folder / "traces.parquet"
+        return self._rows("traces", "traces; give it outputs={\"traces\": True}")
+
+    @cached_property
+    def steps(self) -> Table:
+        """One row for the rope after every step of some traces, as those of `Ropes.steps`; only of studies with
+        ``outputs = {"steps": ...}``."""
+        return self._rows("steps", "steps; give it outputs={\"steps\": 100}, say, for the first 100 traces")
+
+    @cached_property
+    def points(self) -> Table:
+        """The points of some traces: ``trace``, ``x``, ``y``, as `Scene.evaluate` takes them; only of studies with
+        ``outputs = {"points": ...}``."""
+        return self._rows("points", "points; give it outputs={\"points\": 100}, say, for the first 100 traces")
+
+    def _rows(self, name: str, otherwise: str) -> Table:
+        file = self.folder / f"{name}.parquet"
         if not file.exists():
-            raise StudyError('the study wrote no traces; give it outputs={"traces": True}')
+            raise StudyError(f"the study wrote no {otherwise}")
         return Table(_core.Table.of_parquet(file))
+
+    def replay(self, trace: int) -> Ropes:
+        """The rope of one of the study's traces, drawn and evaluated again: its lengths step by step, its events, its
+        picture. The study's folder and its scene must be there. O(steps)."""
+        study = _core.Study.of_folder(self.folder, _base(self.folder, None))
+        scene, ropes = study.replay(trace)
+        return Ropes(ropes, Scene._of(scene))
 
     @property
     def report(self) -> str:
@@ -385,12 +498,16 @@ class Answer:
         return f'<iframe srcdoc="{html.escape(page)}" style="{style}"></iframe>'
 
     def __reduce__(self) -> Any:
-        rows = self.traces if (self.folder / "traces.parquet").exists() or "traces" in self.__dict__ else None
+        names = ("traces", "steps", "points")
+        rows = {name: getattr(self, name) for name in names if self._has(name)}
         try:
             page = self.report
         except StudyError:
             page = None
         return _restored, (self.folder, self._text, rows, page)
+
+    def _has(self, name: str) -> bool:
+        return name in self.__dict__ or (self.folder / f"{name}.parquet").exists()
 
     def __repr__(self) -> str:
         length = self.mean("max_length") if self.summary["traces"] else "unknown"
@@ -398,18 +515,34 @@ class Answer:
         return f"<Answer: {of}, greatest rope length {length} on the mean>"
 
 
-def _restored(folder: Path, text: str, rows: Table | None, page: str | None) -> Answer:
+def _restored(folder: Path, text: str, rows: dict[str, Table], page: str | None) -> Answer:
     """An answer without its folder: on another machine, say."""
     answer = Answer.__new__(Answer)
     answer.folder, answer._room, answer._text, answer.summary = folder, None, text, json.loads(text)
     answer.__dict__["_page"] = page
-    if rows is not None:
-        answer.__dict__["traces"] = rows
+    answer.__dict__.update(rows)
     return answer
+
+
+def _restored_study(plan: str, base: str, scene: str | None) -> Study:
+    """A study that was pickled, with a scene of its own if it had one."""
+    study = object.__new__(Study)
+    study._keep(base, scene)
+    study._core = _core.Study.of_text(plan, True, study._base)
+    return study
 
 
 def _estimate(found: Mapping[str, Any]) -> Estimate:
     return Estimate(found["value"], found["low"], found["high"])
+
+
+#: How an estimate's parts are called behind a name.
+_PARTS = {"": "value", "_error": "error", "_low": "low", "_high": "high"}
+
+
+def _within(limit: float) -> str:
+    """What the share of ropes within a limit is called."""
+    return f"within_{limit!r}".removesuffix(".0")
 
 
 def _frame(rows: Mapping[Any, Mapping[str, Any]], index: str | list[str]) -> Any:
@@ -431,11 +564,42 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} cannot stand in a plan")
 
 
+def _json(plan: Mapping[str, Any]) -> str:
+    try:
+        return json.dumps(plan, default=_plain)
+    except TypeError as error:
+        raise StudyError(f"the plan: {error}") from None
+
+
 def _base(folder: Path, base: str | os.PathLike[str] | None) -> Path | None:
-    """From where a study's files are named: one with a scene of its own has that in its folder."""
+    """From where a study's files are named: one with a scene of its own has that in its folder, and a sweep in that
+    of all."""
     if base is not None:
         return Path(base)
-    return folder if (folder / _SCENE).exists() else None
+    if (folder / _SCENE).exists():
+        return folder
+    return folder.parent if (folder.parent / _SWEEP).exists() and (folder.parent / _SCENE).exists() else None
+
+
+def status(*folders: str | os.PathLike[str]) -> Any:
+    """How far the studies and sweeps in folders are, also while others write there: a DataFrame of pandas by folder,
+    with a row for each point of a sweep.
+
+    Columns: ``part`` (which part of the study is there), ``done`` and ``blocks``, ``stopped`` (``unfinished``, or why
+    there is nothing left to do), ``traces_per_second``, ``seconds_left``, ``holder`` (who writes there, ``host:
+    process``), and ``fault`` (what is wrong with a folder that holds nothing of this).
+    """
+    import pandas
+
+    found = json.loads(_core.status_of([Path(folder) for folder in folders]))
+    rows: list[dict[str, Any]] = []
+    for of in [*found.get("sweeps", []), *found["studies"]]:
+        for one in of.get("studies", of.get("folders")):
+            holder = one["holder"] and f"{one['holder']['host']}: {one['holder']['process']}"
+            rows.append({**one, "part": one.pop("shard"), "holder": holder, "fault": None})
+    rows += [{"folder": folder, "fault": fault} for folder, fault in found["others"]]
+    columns = ["part", "done", "blocks", "stopped", "traces_per_second", "seconds_left", "holder", "fault"]
+    return pandas.DataFrame(rows, columns=["folder", *columns]).set_index("folder")
 
 
 def _warn(notes: list[str]) -> None:
