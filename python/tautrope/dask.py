@@ -58,8 +58,8 @@ def run(
         study: The study, or a sweep: the parts of all its points are shared out together.
         client: A ``dask.distributed.Client``.
         out: The folder for all that comes out; without it one that is gone when this study and its answers are.
-        parts: In how many parts, at the most, each study is shared out: without it 64 or eight for each worker, whichever
-            is more, among all points.
+        parts: In how many parts all is shared out, about: each point of a sweep is one at the least. Without it 64, or
+            eight for each worker if that is more.
         progress: Whether to say on stderr how far it is; or a function that is told the blocks done and of how many.
         engine: As for `Study.run`, on the workers.
 
@@ -76,7 +76,7 @@ def run(
     folder, room = study._place(out)
     points = _points(study, folder)
     workers = max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
-    share = parts or max(1, -(-max(_LEAST, _EACH * workers) // len(points)))
+    share = -(-(parts or max(_LEAST, _EACH * workers)) // len(points))
     stop = Event(f"tautrope-{uuid.uuid4()}", client=client)
     under_way: dict[Any, tuple[_Point, int, int]] = {}
     try:
