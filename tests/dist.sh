@@ -51,20 +51,33 @@ python="${PYTHON:-python3}"
 "$scratch/maturin/bin/python" -m pip install --quiet maturin
 "$scratch/maturin/bin/maturin" build --quiet --release --locked --sdist --interpreter "$scratch/maturin/bin/python" \
     --manifest-path python/Cargo.toml --out "$dist"
+# The source distribution knows no repository either: it carries what the crate does.
+sdist="$dist/tautrope-$version.tar"
+mkdir "$scratch/tautrope-$version"
+cp "$scratch/crate/tautline-$version/.cargo_vcs_info.json" "$scratch/tautrope-$version"
+rm -f "$sdist"
+gunzip "$sdist.gz"
+tar --append -f "$sdist" -C "$scratch" "tautrope-$version/.cargo_vcs_info.json"
+gzip -n "$sdist"
 for handed in "$dist/tautrope-$version"-cp310-abi3-*.whl "$dist/tautrope-$version.tar.gz"; do
     say "installing $(basename "$handed")"
     venv="$scratch/venv-${handed##*.}"
     "$python" -m venv "$venv"
     "$venv/bin/python" -m pip install --quiet "$handed" pandas
-    "$venv/bin/python" - python/README.md "$scratch" <<'PY'
-import os, re, sys
+    "$venv/bin/python" - python/README.md "$scratch" "$commit" <<'PY'
+import json, os, re, sys
 from importlib.metadata import distribution
+
+import tautrope
 
 block = re.search(r"```python\n(.*?)```", open(sys.argv[1]).read(), re.DOTALL).group(1)
 os.chdir(sys.argv[2])
 exec(compile(block, "README.md", "exec"))
 files = [str(file) for file in distribution("tautrope").files]
 assert sum("LICENSE-" in file for file in files) == 2, files
+answer = tautrope.Study(scene="rooms", walk={"kind": "uniform", "step": 0.2, "steps": 9}).run(progress=False)
+built_from = json.loads((answer.folder / "run.json").read_text())["commit"]
+assert built_from.removesuffix("-changed") == sys.argv[3], built_from
 PY
 done
 say "all are in $dist"
