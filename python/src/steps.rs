@@ -8,9 +8,11 @@ use arrow_array::{RecordBatch, RecordBatchReader};
 use arrow_schema::{ArrowError, SchemaRef};
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
+use rayon::ThreadPool;
 use tautline::output::step_batches;
 use tautline::scene::Centre;
 
+use crate::compute;
 use crate::ropes::Kept;
 use crate::table::Table;
 
@@ -54,15 +56,19 @@ impl StepStream {
     ) -> PyResult<Bound<'py, PyCapsule>> {
         let _ = requested_schema;
         let of = StepStream { of: self.of.clone(), centres: self.centres.clone() };
-        let schema = self.rows(0..0).0;
-        let stream = FFI_ArrowArrayStream::new(Box::new(Reader { of, schema, place: 0, ready: Vec::new() }));
+        let (schema, pool) = (self.rows(0..0).0, compute::pool(py)?);
+        let stream = FFI_ArrowArrayStream::new(Box::new(Reader { of, schema, pool, place: 0, ready: Vec::new() }));
         PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
     }
 
     /// The rows of the next traces from place `first` on, and the place behind them; none at the end.
-    fn part(&self, py: Python<'_>, first: usize) -> Option<(Table, usize)> {
+    fn part(&self, py: Python<'_>, first: usize) -> PyResult<Option<(Table, usize)>> {
         let places = self.next(first);
-        (!places.is_empty()).then(|| (py.detach(|| Table::of(self.rows(places.clone()))), places.end))
+        if places.is_empty() {
+            return Ok(None);
+        }
+        let end = places.end;
+        Ok(Some((compute::run(py, |_| Ok(Table::of(self.rows(places))), |_, _| Ok(()))?, end)))
     }
 }
 
@@ -70,6 +76,8 @@ impl StepStream {
 struct Reader {
     of: StepStream,
     schema: SchemaRef,
+    /// Whoever reads it may hold no interpreter's lock, and be no thread of the package's.
+    pool: Arc<ThreadPool>,
     place: usize,
     /// What is made and not read yet, the last of it first.
     ready: Vec<RecordBatch>,
@@ -82,7 +90,7 @@ impl Iterator for Reader {
         if self.ready.is_empty() {
             let places = self.of.next(self.place);
             self.place = places.end;
-            self.ready = self.of.rows(places).1;
+            self.ready = self.pool.install(|| self.of.rows(places)).1;
             self.ready.reverse();
         }
         self.ready.pop().map(Ok)

@@ -56,21 +56,29 @@ class Study:
     A plan has these sections, of which only ``scene`` and ``walk`` are needed (docs/studies.md explains all keys, and
     ``Study(...).plan`` shows them with what they are if left out):
 
-    - ``scene``: ``{"built_in": "rooms"}`` or ``{"file": "plan.svg"}``, with ``anchor`` if the file marks none
+    - ``scene``: ``{"built_in": "rooms"}`` or ``{"file": "plan.svg"}``, with ``anchor`` if the file marks none, or a list
+      of anchors from which walks start by turns
     - ``walk``: ``{"kind": ..., "step": length of a step, "steps": how many}``. Kinds are ``uniform`` (any direction),
       ``gaussian``, ``persistent`` (keeps its heading but for ``turn``), ``waypoints`` (drives from goal to goal), and
       ``given`` (the traces of ``file``)
-    - ``run``: ``{"traces": how many, "seed": a number, ...}``
-    - ``tallies``: what is counted: ``limits`` of lengths, ``map`` (cells along the longer side), ``confidence``, ...
+    - ``run``: ``{"traces": how many, "seed": a number, "block": traces that are counted as one, ...}``. Errors of means
+      and of differences come from how blocks differ, so have ten of them or more
+    - ``tallies``: what is counted: ``limits`` of lengths, ``map`` (cells along the longer side), ``confidence``,
+      ``anchors`` (whether `Answer.anchors` tells them apart), ...
     - ``until``: when to stop earlier: ``relative_error``, ``seconds``
-    - ``outputs``: what is written besides: ``traces`` (one row a trace), ``pictures``
+    - ``outputs``: what is written besides: ``traces`` (one row a trace), ``steps`` and ``points`` (of how many traces, or
+      of which: `Answer.steps`, `Answer.points`), ``pictures``
+    - ``sweep``: keys with a list of values each, ``{"walk.step": [0.2, 0.4]}``: the plan is a `Sweep` then, whose
+      ``run`` gives a `SweepAnswer`
+
+    `tautrope.dask.run` runs a study on a Dask cluster.
 
     Args:
         plan: A study's file (``.toml``), or a dict with the same sections; see docs/studies.md for all keys. Without it
             only what the keywords say.
         base: The folder from which the plan's files are named, if it is no file: the current one without it.
-        sections: Sections of the plan: ``scene``, ``walk``, ``run``, ``tallies``, ``until``, ``outputs``. ``scene`` may
-            be a `Scene`, too, or the name of a built-in one.
+        sections: Sections of the plan: ``scene``, ``walk``, ``run``, ``tallies``, ``until``, ``outputs``, ``sweep``.
+            ``scene`` may be a `Scene`, too, or the name of a built-in one.
 
     >>> import tautrope
     >>> scene = tautrope.Scene([[[-1, 0], [1, 0]], [[3, 3], [5, 1]]], anchor=(0, -1))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 import pickle
 from pathlib import Path
 from typing import Any
@@ -95,6 +97,24 @@ def test_many_steps_come_in_parts(rooms: Scene) -> None:
     parts = [len(part) for part in ropes.stream_steps()]
     assert sum(parts) == 1500 * 401 and len(parts) == 3 and max(parts) < 300_000
     assert all(count % 401 == 0 for count in parts)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes cannot be forked here")
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_forks_make_steps_too(rooms: Scene) -> None:
+    traces = rooms.walks(40, steps=100)
+    here = _all_ways(rooms, traces)
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        assert pool.starmap_async(_all_ways, [(rooms, traces)] * 3).get(60) == [here] * 3
+
+
+def _all_ways(scene: Scene, traces: np.ndarray[Any, Any]) -> tuple[float, float, float]:
+    import pyarrow
+
+    ropes = scene.evaluate(traces)
+    streamed = pyarrow.RecordBatchReader.from_stream(ropes.stream_steps()).read_all()
+    in_parts = sum(part["length"].sum() for part in ropes.stream_steps())
+    return float(ropes.steps["length"].sum()), float(in_parts), float(streamed["length"].to_numpy().sum())
 
 
 def test_steps_pickle(desks: Scene, dragged: np.ndarray[Any, Any]) -> None:
