@@ -191,7 +191,7 @@ if [ "$(id -u)" -eq 0 ] && has_slurm >/dev/null && begin_slurm >"$work/slurm.beg
     same "Slurm, a stop over shards" stop/all rule
     "$TAUTLINE" study status "$work"/stop/part-*/ | sed -n 1p | cut -c1-70
 else
-    left_out+=("Slurm (its packages, or the right to start it, are missing: $(tail -n 1 "$work/slurm.begin" 2>/dev/null))")
+    left_out+=("Slurm (its packages, or the right to start it, are missing: $(tail -n 1 "$work/slurm.begin" 2>/dev/null || true))")
 fi
 
 # Dask's workers need the Python package: the wheel that TAUTROPE names, or one that is built here.
