@@ -55,11 +55,13 @@ True
 import os as _os
 import sys as _sys
 
+from ._answer import Answer, Estimate
 from ._errors import EngineError, InputError, ReadError, StudyError, TautropeError, ViolationError, WriteError
+from ._folders import status
 from ._live import Event, LiveRope
 from ._ropes import Ropes
 from ._scene import Scene, Violation
-from ._study import Answer, Estimate, Study, status
+from ._study import Study
 from ._sweep import Sweep, SweepAnswer
 from ._table import StepStream, Table
 from ._tautrope import __version__

@@ -11,9 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from . import _tautrope as _core
+from ._answer import Answer
 from ._errors import InputError
+from ._folders import base_of
+from ._frames import PARTS, frame, within
 from ._ropes import Picture
-from ._study import _PARTS, Answer, Progress, Study, _base, _frame, _plain, _Said, _warn, _within
+from ._progress import Progress, Said, warn
+from ._study import Study, plain
 from ._table import Table
 
 #: What names a point: its number, or the values of the keys.
@@ -23,7 +27,8 @@ Point = int | Mapping[str, Any]
 class Sweep(Study):
     """Studies that differ in the values of some keys: how does the answer change with them?
 
-    A plan with a section ``sweep`` is one: ``Study(plan)`` makes a `Sweep` of it. The section gives keys of the plan a
+    A plan with a section ``sweep`` is one: ``Study(plan)`` makes a `Sweep` of it, and so does ``Sweep(plan)``, by which
+    type checkers know. The section gives keys of the plan a
     list of values each, and there is a study, a point, for each of them, with every value of each other key. Trace i of
     all points has the same random numbers, so that differences between points are more certain than their answers.
 
@@ -47,7 +52,7 @@ class Sweep(Study):
         self._swept = _core.Sweep.of_file(path)
 
     def _open(self, plan: dict[str, Any]) -> None:
-        self._text = _toml(json.loads(json.dumps(plan, default=_plain)))
+        self._text = _toml(json.loads(json.dumps(plan, default=plain)))
         self._swept = _core.Sweep.of_text(self._text, self._base)
 
     @property
@@ -82,8 +87,8 @@ class Sweep(Study):
     ) -> SweepAnswer:
         """Runs all points, or goes on with what is in the folder, and returns their answers; as `Study.run`."""
         folder, room = self._place(out)
-        with _Said(progress) as said:
-            _warn(self._swept.run(folder, engine, said, self._scene))
+        with Said(progress) as said:
+            warn(self._swept.run(folder, engine, said, self._scene))
         return SweepAnswer(folder, room)
 
     @staticmethod
@@ -96,8 +101,8 @@ class Sweep(Study):
     ) -> SweepAnswer:
         """Goes on with the sweep in a folder, whatever program began it, and returns the answers; as `Study.resume`."""
         place = Path(folder)
-        with _Said(progress) as said:
-            _warn(_core.resume_sweep(place, _base(place, base), engine, said))
+        with Said(progress) as said:
+            warn(_core.resume_sweep(place, base_of(place, base), engine, said))
         return SweepAnswer(place)
 
     def __reduce__(self) -> Any:
@@ -119,7 +124,7 @@ class SweepAnswer:
         #: The sweep's folder.
         self.folder = Path(folder)
         self._room = room
-        self._text, table, picture = _core.look_at_sweep(self.folder, _base(self.folder, None), None)
+        self._text, table, picture = _core.look_at_sweep(self.folder, base_of(self.folder, None), None)
         self._take(Table(table), picture)
 
     def _take(self, table: Table, picture: str | None) -> None:
@@ -145,14 +150,14 @@ class SweepAnswer:
         """One row a point: its folder, the values of the keys, traces and blocks, and of each quantity its mean, its
         quantiles and the difference of its mean, each with ``_error``, ``_low`` and ``_high`` behind its name; a
         DataFrame by the point's number."""
-        frame = self.table.to_pandas()
-        frame.index.name = "number"
-        return frame
+        points = self.table.to_pandas()
+        points.index.name = "number"
+        return points
 
     @property
     def scalars(self) -> Any:
-        """The mean of each quantity with its standard error and interval, its deviation and extremes: a DataFrame by the
-        values of the keys and the quantity's name."""
+        """The mean of each quantity with its standard error and interval, its deviation and extremes: a DataFrame by
+        the values of the keys and the quantity's name."""
         return self._frame(
             lambda point: {
                 (s["name"],): {**s["mean"], "deviation": s["deviation"], "min": s["min"], "max": s["max"]}
@@ -163,8 +168,8 @@ class SweepAnswer:
 
     @property
     def quantiles(self) -> Any:
-        """Below which value each share of the traces lies, with its interval: a DataFrame by the values of the keys, name
-        and share."""
+        """Below which value each share of the traces lies, with its interval: a DataFrame by the values of the keys,
+        name and share."""
         return self._frame(
             lambda point: {
                 (s["name"], q["share"]): {key: q["value"][key] for key in ("value", "low", "high")}
@@ -195,8 +200,8 @@ class SweepAnswer:
 
     def differences(self, against: Point | None = None) -> Any:
         """By how much the mean of each quantity is above that of another point, with an interval: a DataFrame by the
-        values of the keys and the quantity's name. 0 outside of the interval means that they differ. ``within_LIMIT`` is
-        the share of ropes that never were longer than one of ``tallies.limits``.
+        values of the keys and the quantity's name. 0 outside of the interval means that they differ. ``within_LIMIT``
+        is the share of ropes that never were longer than one of ``tallies.limits``.
 
         Args:
             against: The other point, by its number or the values of the keys; the one that the sweep names without it.
@@ -205,14 +210,14 @@ class SweepAnswer:
         number = self.against if against is None else self._number(against)
         summary = self.summary
         if number != self.against:
-            text, _, _ = _core.look_at_sweep(self.folder, _base(self.folder, None), number)
+            text, _, _ = _core.look_at_sweep(self.folder, base_of(self.folder, None), number)
             summary = json.loads(text)
 
         def of(point: Mapping[str, Any]) -> Any:
             told = point["differences"] or {"scalars": [], "within": []}
             named = [(d["name"], d["mean"]) for d in told["scalars"]]
-            named += [(_within(d["limit"]), d["share"]) for d in told["within"]]
-            return {(name,): dict(value) if value else dict.fromkeys(_PARTS.values()) for name, value in named}
+            named += [(within(d["limit"]), d["share"]) for d in told["within"]]
+            return {(name,): dict(value) if value else dict.fromkeys(PARTS.values()) for name, value in named}
 
         return self._frame(of, ["name"], summary)
 
@@ -239,15 +244,16 @@ class SweepAnswer:
         }
         index = self.keys + names
         if len(index) == 1:
-            return _frame({key: row for (key,), row in rows.items()}, index[0])
-        return _frame(rows, index)
+            return frame({key: row for (key,), row in rows.items()}, index[0])
+        return frame(rows, index)
 
     def _number(self, point: Point) -> int:
         if isinstance(point, Mapping):
             unknown = [key for key in point if key not in self.keys]
             if unknown:
                 raise InputError(f"{unknown[0]} is not swept; the keys are {', '.join(self.keys)}")
-            found = [i for i, v in enumerate(self._values) if point.items() <= dict(zip(self.keys, v, strict=True)).items()]
+            all_of = [dict(zip(self.keys, values, strict=True)) for values in self._values]
+            found = [i for i, values in enumerate(all_of) if point.items() <= values.items()]
             if len(found) != 1:
                 raise InputError(f"{len(found)} points have {dict(point)}; one is needed")
             return found[0]
@@ -281,8 +287,8 @@ class SweepAnswer:
         return Picture(self._picture)
 
     def _repr_html_(self) -> str:
-        frame = self.mean()._repr_html_() if any(point["traces"] for point in self.summary["points"]) else ""
-        return f"<p>{html.escape(repr(self))}</p>{self._picture or ''}{frame}"
+        means = self.mean()._repr_html_() if any(point["traces"] for point in self.summary["points"]) else ""
+        return f"<p>{html.escape(repr(self))}</p>{self._picture or ''}{means}"
 
     def __reduce__(self) -> Any:
         begun = {i: self[i] for i, point in enumerate(self.summary["points"]) if point["traces"]}

@@ -1,5 +1,5 @@
-"""Studies and sweeps on the workers of a Dask cluster: their blocks are shared out, and the answer is that of one run, byte
-for byte.
+"""Studies and sweeps on the workers of a Dask cluster: their blocks are shared out, and the answer is that of one run,
+byte for byte.
 
 >>> import tautrope, tautrope.dask
 >>> from dask.distributed import Client
@@ -25,8 +25,11 @@ from pathlib import Path
 from typing import Any
 
 from . import _tautrope as _core
+from ._answer import Answer
 from ._errors import InputError, StudyError
-from ._study import _SCENE, Answer, Progress, Study, _Said, _warn
+from ._folders import SCENE
+from ._progress import Progress, Said, warn
+from ._study import Study
 from ._sweep import Sweep, SweepAnswer
 
 #: How many parts there are at the least, if there are as many blocks, and for each worker.
@@ -42,14 +45,15 @@ def run(
     progress: bool | Progress = True,
     engine: str | None = None,
 ) -> Answer | SweepAnswer:
-    """Runs a study or a sweep on the workers of a Dask cluster, and returns the answer: that of ``study.run``, byte for byte.
+    """Runs a study or a sweep on the workers of a Dask cluster, and returns the answer: that of ``study.run``, byte for
+    byte.
 
     Parts of the study, each some blocks, are tasks. Whatever comes back is saved at once on the client's machine, below
-    ``parts`` in the folder; workers need no folder in common, but the package, and each file that the plan names, at the
-    same place. A `Scene` goes along. A worker that is lost costs its parts under way, which Dask gives to others.
+    ``parts`` in the folder; workers need no folder in common, but the package, and each file that the plan names, at
+    the same place. A `Scene` goes along. A worker that is lost costs its parts under way, which Dask gives to others.
 
-    With ``until.relative_error`` the study ends with the first block, in the order of the blocks, after which it is certain
-    enough, whatever came back first; what is under way behind that is stopped.
+    With ``until.relative_error`` the study ends with the first block, in the order of the blocks, after which it is
+    certain enough, whatever came back first; what is under way behind that is stopped.
 
     Ctrl-C stops all of it, and the same call goes on with what is saved, on any cluster and in other parts if you like.
     ``tautline study status`` and ``merge --partial`` take the folders in ``parts`` meanwhile.
@@ -80,7 +84,7 @@ def run(
     stop = Event(f"tautrope-{uuid.uuid4()}", client=client)
     under_way: dict[Any, tuple[_Point, int, int]] = {}
     try:
-        with _Said(progress) as said:
+        with Said(progress) as said:
             for point in points:
                 point.conclude_if_done()
                 for first, end in point.missing(share) if not point.is_done else ():
@@ -196,8 +200,8 @@ class _Point:
             return
         if self.study._scene is not None:
             self.base.mkdir(parents=True, exist_ok=True)
-            (self.base / _SCENE).write_text(self.study._scene)
-        _warn(_core.merge_parts(self._folders(), self.base, self.folder))
+            (self.base / SCENE).write_text(self.study._scene)
+        warn(_core.merge_parts(self._folders(), self.base, self.folder))
         self.is_done = True
 
     def _is_enough(self) -> bool:

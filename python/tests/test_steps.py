@@ -35,7 +35,8 @@ def theirs(desks: Scene, dragged: np.ndarray[Any, Any], program: Program, tmp_pa
 
     folder = tmp_path_factory.mktemp("steps")
     count, points, _ = dragged.shape
-    columns = {"trace": np.repeat(np.arange(count), points), "x": dragged[:, :, 0].ravel(), "y": dragged[:, :, 1].ravel()}
+    x, y = dragged.reshape(-1, 2).T
+    columns = {"trace": np.repeat(np.arange(count), points), "x": x, "y": y}
     pandas.DataFrame(columns).to_parquet(folder / "walks.parquet")
     desks.write(folder / "desks.geojson")
     for kind in ("parquet", "csv", "jsonl"):

@@ -82,7 +82,8 @@ def test_tables_say_what_the_points_say(answer: SweepAnswer) -> None:
 
     rows = pandas.read_csv(answer.folder / "sweep.csv")
     for name in rows.columns:
-        assert np.array_equal(rows[name].to_numpy(), answer.points[name].to_numpy(), equal_nan=rows[name].dtype == float)
+        told = answer.points[name].to_numpy()
+        assert np.array_equal(rows[name].to_numpy(), told, equal_nan=rows[name].dtype == float), name
     values = [(step, seed) for step in (0.25, 0.5) for seed in (1, 2, 3)]
     assert [*answer.mean().index] == values and answer.against == 1 and len(answer) == 6
     for number, (point, at) in enumerate(zip(answer, values, strict=True)):
@@ -98,7 +99,8 @@ def test_tables_say_what_the_points_say(answer: SweepAnswer) -> None:
         difference = answer.differences().loc[(*at, "max_length")]
         assert difference["value"] == pytest.approx(point.mean("max_length").value - answer[1].mean("max_length").value)
         assert difference["value"] == answer.points.loc[number, "max_length_mean_difference"]
-        assert answer.differences().loc[(*at, "within_6.5"), "value"] == answer.points.loc[number, "within_6.5_difference"]
+        within = answer.differences().loc[(*at, "within_6.5"), "value"]
+        assert within == answer.points.loc[number, "within_6.5_difference"]
     with pytest.raises(InputError, match="there is no weight"):
         answer.mean("weight")
     with pytest.raises(InputError, match="no quantile 0.3"):
