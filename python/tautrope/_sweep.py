@@ -252,8 +252,8 @@ class SweepAnswer:
             unknown = [key for key in point if key not in self.keys]
             if unknown:
                 raise InputError(f"{unknown[0]} is not swept; the keys are {', '.join(self.keys)}")
-            all_of = [dict(zip(self.keys, values, strict=True)) for values in self._values]
-            found = [i for i, values in enumerate(all_of) if point.items() <= values.items()]
+            wanted = json.loads(json.dumps(dict(point), default=plain))
+            found = [i for i in range(len(self)) if self._has(i, wanted)]
             if len(found) != 1:
                 raise InputError(f"{len(found)} points have {dict(point)}; one is needed")
             return found[0]
@@ -262,6 +262,12 @@ class SweepAnswer:
             # What iteration by numbers ends with, too.
             raise IndexError(f"there is no point {number}; they are 0 to {len(self) - 1}")
         return number % len(self)
+
+    def _has(self, number: int, wanted: Mapping[str, Any]) -> bool:
+        """Whether a point has these values, which may be the texts that tables have for lists."""
+        given = dict(zip(self.keys, self.summary["points"][number]["values"], strict=True))
+        told = dict(zip(self.keys, self._values[number], strict=True))
+        return all(value == given[key] or value == told[key] for key, value in wanted.items())
 
     def __getitem__(self, point: Point) -> Answer:
         """What a point says alone."""

@@ -20,6 +20,7 @@ import tempfile
 import time
 import uuid
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -79,8 +80,7 @@ def run(
         raise InputError(f"parts: {parts} are none; give 1 or more")
     folder, room = study._place(out)
     points = _points(study, folder)
-    workers = max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
-    share = -(-(parts or max(_LEAST, _EACH * workers)) // len(points))
+    share = -(-(parts or max(_LEAST, _EACH * len(client.nthreads()))) // len(points))
     stop = Event(f"tautrope-{uuid.uuid4()}", client=client)
     under_way: dict[Any, tuple[_Point, int, int]] = {}
     try:
@@ -113,9 +113,13 @@ def run(
         # What is under way on workers looks at this now and then.
         stop.set()
         client.cancel(list(under_way))
+    if not all(point.is_done for point in points):
+        raise StudyError("some parts were cancelled by others; what is done is saved, and the same call goes on")
     if isinstance(study, Sweep):
         _core.conclude_sweep(folder, points[0].base)
-    shutil.rmtree(folder / "parts", ignore_errors=True)
+    for point in points:
+        point.tidy()
+    _remove(folder / "parts")
     return SweepAnswer(folder, room) if isinstance(study, Sweep) else Answer(folder, room)
 
 
@@ -151,11 +155,14 @@ class _Point:
             there = Answer(folder)
             if there.summary["identity"] != study.identity:
                 raise StudyError(f"{folder} holds another study already; give another folder")
-            self.is_done = there.summary["stopped"] != "unfinished"
-            if not self.is_done:
+            if there.summary["stopped"] == "unfinished":
                 raise StudyError(f"{folder} holds part of this study, begun without Dask; go on with study.run")
+            if not (folder / "summary.json").exists():
+                # It was put together, and stopped before that was told.
+                warn(study._core.run(folder, None, None, study._scene))
+            self.is_done = True
         for left in parts.glob(".new-*"):
-            shutil.rmtree(left, ignore_errors=True)
+            shutil.rmtree(left)
         #: The folders of parts that are saved, by each block in them.
         self.saved: dict[int, Path] = {}
         for part in parts.glob("part-*-*"):
@@ -192,6 +199,12 @@ class _Point:
         new.rename(part)
         self.saved.update(dict.fromkeys(range(first, end), part))
 
+    def tidy(self) -> None:
+        """Removes the parts, once the answer is there."""
+        for part in self._folders():
+            shutil.rmtree(part)
+        _remove(self.parts)
+
     def conclude_if_done(self) -> None:
         """Puts the parts together once they are all, or as many as the answer needs."""
         if self.is_done or not self.saved:
@@ -215,6 +228,12 @@ class _Point:
         is_enough = _core.are_enough(self.study._core, self._folders(gap))
         self._asked, self._next = gap, time.monotonic() + 4 * (time.monotonic() - start)
         return is_enough
+
+
+def _remove(folder: Path) -> None:
+    """Removes a folder of parts, unless somebody else's files are in it."""
+    with suppress(OSError):
+        folder.rmdir()
 
 
 @lru_cache(maxsize=4)

@@ -49,6 +49,13 @@ def test_the_answer_is_that_of_one_run(client: Any, tmp_path: Path) -> None:
     told.clear()
     again = tautrope.dask.run(plan, client, tmp_path / "out", progress=lambda *of: told.append(of))
     assert again.summary == own.summary and not told
+    # So is what was put together and not told any more. What others keep in the folder stays.
+    (tmp_path / "out/parts").mkdir()
+    (tmp_path / "out/parts/mine.txt").write_text("mine")
+    (tmp_path / "out/summary.json").unlink()
+    again = tautrope.dask.run(plan, client, tmp_path / "out", progress=False)
+    assert (again.folder / "summary.json").read_bytes() == (truth.folder / "summary.json").read_bytes()
+    assert (tmp_path / "out/parts/mine.txt").read_text() == "mine"
     temporary = tautrope.dask.run(plan, client, progress=False, parts=3)
     assert temporary.summary == own.summary
 
@@ -132,6 +139,28 @@ def test_what_is_under_way_is_stopped(client: Any) -> None:
 
 def _is_busy(dask_worker: Any) -> bool:
     return bool(dask_worker.state.executing_count or dask_worker.active_threads)
+
+
+def test_parts_that_others_cancel_are_said_and_not_lost(client: Any, tmp_path: Path) -> None:
+    class Client:
+        """Somebody else cancels some parts."""
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(client, name)
+
+        def submit(self, *given: Any, **named: Any) -> Any:
+            future = client.submit(*given, **named)
+            if named["priority"] < -60:
+                future.cancel()
+            return future
+
+    plan = study()
+    with pytest.raises(StudyError, match="cancelled by others"):
+        tautrope.dask.run(plan, Client(), tmp_path / "out", progress=False)
+    assert 20 < len(list((tmp_path / "out/parts").iterdir())) < 80
+    own = tautrope.dask.run(plan, client, tmp_path / "out", progress=False)
+    assert isinstance(own, Answer)
+    same(own, plan.run(progress=False))
 
 
 def test_a_sweep_in_a_scene_of_ones_own(client: Any, tmp_path: Path) -> None:

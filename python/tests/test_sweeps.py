@@ -171,7 +171,9 @@ def test_a_sweep_in_a_scene_of_ones_own(tmp_path: Path) -> None:
     resumed = Study.resume(moved, progress=False)
     assert isinstance(resumed, SweepAnswer) and resumed.summary == answer.summary
     one = Study(scene=scene.tied((2, 1)), walk=walk, run={"traces": 200}).run(progress=False)
-    assert resumed[1].scalars.equals(one.scalars)
+    for named in ([2.0, 1.0], (2, 1), "[2, 1]", np.array([2, 1])):
+        assert resumed[{"scene.anchor": named}].scalars.equals(one.scalars)
+    assert resumed[1].replay(3)["max_length"][0] == one.replay(3)["max_length"][0]
     assert answer.mean().index.tolist() == ["[0, -1]", "[2, 1]"]
     assert pickle.loads(pickle.dumps(Study(scene=scene, walk=walk, sweep={"run.seed": [1, 2]}))).keys == ["run.seed"]
 
