@@ -201,8 +201,15 @@ mod tests {
         let short = merge_results(&all, &at("no.parquet"), &nothing(), &[], 40_001, true).unwrap_err().to_string();
         assert!(short.ends_with("its parts have 40000 rows instead of 40001"), "{short}");
         assert!(rows(&at("merged.parquet")) == rows(&whole));
-        merge_results(std::slice::from_ref(&whole), &at("again.parquet"), &nothing(), &[("a", "b".to_owned())], 40_000, false)
-            .unwrap();
+        merge_results(
+            std::slice::from_ref(&whole),
+            &at("again.parquet"),
+            &nothing(),
+            &[("a", "b".to_owned())],
+            40_000,
+            false,
+        )
+        .unwrap();
         assert!(std::fs::read(at("merged.parquet")).unwrap() == std::fs::read(at("again.parquet")).unwrap());
         let first = written(&at("first.parquet"), 0..10_001);
         for (from, to) in [(&all[..], "cut.parquet"), (&[first][..], "cut2.parquet")] {
@@ -211,8 +218,9 @@ mod tests {
         assert!(std::fs::read(at("cut.parquet")).unwrap() == std::fs::read(at("cut2.parquet")).unwrap());
         let more = merge_results(&all, &at("no.parquet"), &nothing(), &[], 10_001, false).unwrap_err().to_string();
         assert!(more.ends_with("its parts have 40000 rows instead of 10001"), "{more}");
-        let twice =
-            merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &nothing(), &[], 0, false).unwrap_err().to_string();
+        let twice = merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &nothing(), &[], 0, false)
+            .unwrap_err()
+            .to_string();
         assert!(twice.ends_with("trace 500 is in another file too"), "{twice}");
         assert!(!at("no.parquet").exists());
     }
@@ -247,8 +255,9 @@ mod tests {
                 bad[i] ^= change;
                 std::fs::write(&from, bad).unwrap();
                 // One row more than there are: what is taken is not written out.
-                let error =
-                    merge_results(std::slice::from_ref(&from), &to, &nothing(), &[], 10, false).unwrap_err().to_string();
+                let error = merge_results(std::slice::from_ref(&from), &to, &nothing(), &[], 10, false)
+                    .unwrap_err()
+                    .to_string();
                 errors += usize::from(error.contains("from.parquet"));
             }
         }
