@@ -57,9 +57,9 @@ pub fn event_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec<
     })
 }
 
-/// The rope after every step of traces as tables in memory: the columns, and the rows in batches of whole traces, none if
-/// there are no traces. They are those of a [`StepWriter`](super::StepWriter) of a Parquet file. O(points and events), on
-/// all threads.
+/// The rope after every step of traces as tables in memory: the columns, and the rows in batches of whole traces, none
+/// if there are no traces. They are those of a [`StepWriter`](super::StepWriter) of a Parquet file. Turns are counted
+/// about each of `centres`. O(points and events), on all threads.
 ///
 /// # Panics
 ///

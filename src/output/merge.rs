@@ -27,8 +27,8 @@ const ROWS: usize = 1 << 13;
 ///
 /// # Errors
 ///
-/// A file that cannot be read or whose columns are others, a trace that is there twice, fewer `rows` than are wanted, or
-/// more if nothing is cut, and those of [`check_output`](super::check_output).
+/// A file that cannot be read or whose columns are others, a trace that is there twice, fewer `rows` than are wanted
+/// or, if nothing is cut, more; and those of [`check_output`](super::check_output).
 pub fn merge_results(
     from: &[PathBuf],
     to: &Path,

@@ -2,8 +2,7 @@
 //!
 //! One row a trace ([`ResultWriter`]) or one row an event ([`EventWriter`]), in the format that the extension names:
 //! `.jsonl`, `.csv` or `.parquet`. All formats hold the same values and give back the same f64. The bytes depend on the
-//! records alone. [`result_batches`], [`event_batches`] and [`step_batches`] have the same
-//! rows in memory.
+//! records alone. [`result_batches`], [`event_batches`] and [`step_batches`] have the same rows in memory.
 
 mod batches;
 mod columns;
