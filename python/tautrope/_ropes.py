@@ -105,7 +105,8 @@ class Ropes:
         >>> bool(longest == ropes["max_length"].max())
         True
         """
-        return StepStream(self._core.stream_steps(names_of(about)))
+        names = names_of(about)
+        return StepStream(self._core.stream_steps(names), (Ropes.stream_steps, (self, names)))
 
     @property
     def columns(self) -> list[str]:

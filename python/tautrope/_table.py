@@ -113,8 +113,10 @@ class StepStream:
     by its name in a query.
     """
 
-    def __init__(self, core: _core.StepStream) -> None:
+    def __init__(self, core: _core.StepStream, again: Any) -> None:
         self._core = core
+        #: What makes the same of a pickle.
+        self._again = again
 
     def __iter__(self) -> Iterator[Table]:
         place = 0
@@ -124,6 +126,9 @@ class StepStream:
 
     def __arrow_c_stream__(self, requested_schema: Any = None) -> Any:
         return self._core.__arrow_c_stream__(requested_schema)
+
+    def __reduce__(self) -> Any:
+        return self._again
 
     def __repr__(self) -> str:
         return "<StepStream: the rope after every step, made as it is read>"

@@ -61,7 +61,8 @@ def run(
 
     Args:
         study: The study, or a sweep: the parts of all its points are shared out together.
-        client: A ``dask.distributed.Client``.
+        client: A ``dask.distributed.Client``. A part uses all cores of its worker's machine, or as many threads as the
+            environment's RAYON_NUM_THREADS says there: workers of one thread each are enough.
         out: The folder for all that comes out; without it one that is gone when this study and its answers are.
         parts: In how many parts all is shared out, about: each point of a sweep is one at the least. Without it 64, or
             eight for each worker if that is more.
@@ -70,7 +71,7 @@ def run(
 
     Raises:
         StudyError: A folder that holds something else, or a study that ends by the clock (``until.seconds``).
-        KilledWorker: Of Dask: a part was lost with several workers, one after the other.
+        KilledWorker: One of Dask's: a part was lost with several workers, one after the other.
     """
     from dask.distributed import Event, as_completed
 

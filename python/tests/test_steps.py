@@ -124,6 +124,8 @@ def test_steps_pickle(desks: Scene, dragged: np.ndarray[Any, Any]) -> None:
         again = pickle.loads(pickle.dumps(ropes))
         assert again.steps.to_arrow().equals(ropes.steps.to_arrow()) and again.steps.columns[-1] == "winding_desk"
     assert pickle.loads(pickle.dumps(ropes.steps)).to_arrow().equals(ropes.steps.to_arrow())
+    stream = pickle.loads(pickle.dumps(desks.evaluate(dragged).stream_steps(about=["desk"])))
+    assert sum(len(part) for part in stream) == 200 * 151 and next(iter(stream)).columns[-1] == "winding_desk"
 
 
 def test_what_was_not_kept_is_said(desks: Scene, dragged: np.ndarray[Any, Any]) -> None:
