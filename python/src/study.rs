@@ -115,7 +115,9 @@ impl Study {
         let part = Shard::WHOLE.within(first..end).ok_or_else(|| Fault::input("a part has a block at least"))?;
         let begin = |_: &Work| {
             let folder = Arc::new(Folder::make(&out)?);
-            Ok(Session::begin(folder, self.study.clone(), &self.base, part)?)
+            // A study without files needs no folder of the machine on which it was made.
+            let base = if self.base.is_dir() { &self.base } else { &out };
+            Ok(Session::begin(folder, self.study.clone(), base, part)?)
         };
         going::through(py, begin, engine, &Told::all(progress), false).map(drop)
     }

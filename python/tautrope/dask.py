@@ -169,6 +169,9 @@ class _Point:
         for part in parts.glob("part-*-*"):
             first, end = map(int, part.name.split("-")[1:])
             self.saved.update(dict.fromkeys(range(first, end), part))
+        if study._scene is not None and not self.is_done:
+            base.mkdir(parents=True, exist_ok=True)
+            (base / SCENE).write_text(study._scene)
         if self.saved and not self.is_done:
             # Those of another study are refused before anything is computed.
             _core.are_enough(study._core, self._folders())
@@ -212,9 +215,6 @@ class _Point:
             return
         if len(self.saved) < self.blocks and not self._is_enough():
             return
-        if self.study._scene is not None:
-            self.base.mkdir(parents=True, exist_ok=True)
-            (self.base / SCENE).write_text(self.study._scene)
         warn(_core.merge_parts(self._folders(), self.base, self.folder))
         self.is_done = True
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
 from collections.abc import Iterator
 from pathlib import Path
@@ -175,6 +176,14 @@ def test_a_sweep_in_a_scene_of_ones_own(client: Any, tmp_path: Path) -> None:
     assert not (tmp_path / "own/parts").exists()
     moved = (tmp_path / "own").rename(tmp_path / "moved")
     assert Study.resume(moved, progress=False).summary == truth.summary
+
+
+def test_a_study_without_files_needs_no_folder_in_common(tmp_path: Path) -> None:
+    (tmp_path / "gone").mkdir()
+    there = pickle.dumps(Study({**study().plan, "run": {"traces": 60, "block": 20}}, base=tmp_path / "gone"))
+    (tmp_path / "gone").rmdir()
+    pickle.loads(there)._core.run_part(tmp_path / "part", 1, 3, None, None)
+    assert tautrope.status(tmp_path / "part").iloc[0]["part"] == "0/1 of blocks 1..3"
 
 
 def test_what_will_not_do(client: Any, tmp_path: Path) -> None:
