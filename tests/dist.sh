@@ -49,9 +49,8 @@ say "the wheel and the source distribution"
 python="${PYTHON:-python3}"
 "$python" -m venv "$scratch/maturin"
 "$scratch/maturin/bin/python" -m pip install --quiet maturin
-"$scratch/maturin/bin/maturin" build --quiet --release --locked --sdist --interpreter "$scratch/maturin/bin/python" \
-    --manifest-path python/Cargo.toml --out "$dist"
-# The source distribution knows no repository either: it carries what the crate does.
+"$scratch/maturin/bin/maturin" sdist --quiet --manifest-path python/Cargo.toml --out "$dist"
+# It knows no repository: it carries what the crate does, which says from which commit it is.
 sdist="$dist/tautrope-$version.tar"
 mkdir "$scratch/tautrope-$version"
 cp "$scratch/crate/tautline-$version/.cargo_vcs_info.json" "$scratch/tautrope-$version"
@@ -59,6 +58,10 @@ rm -f "$sdist"
 gunzip "$sdist.gz"
 tar --append -f "$sdist" -C "$scratch" "tautrope-$version/.cargo_vcs_info.json"
 gzip -n "$sdist"
+# The wheel is built of nothing else.
+tar -xf "$sdist.gz" -C "$scratch"
+(cd "$scratch/tautrope-$version" && "$scratch/maturin/bin/maturin" build --quiet --release --locked \
+    --interpreter "$scratch/maturin/bin/python" --out "$dist")
 for handed in "$dist/tautrope-$version"-cp310-abi3-*.whl "$dist/tautrope-$version.tar.gz"; do
     say "installing $(basename "$handed")"
     venv="$scratch/venv-${handed##*.}"
