@@ -49,7 +49,7 @@ say "the wheel and the source distribution"
 python="${PYTHON:-python3}"
 "$python" -m venv "$scratch/maturin"
 "$scratch/maturin/bin/python" -m pip install --quiet maturin
-"$scratch/maturin/bin/maturin" sdist --quiet --manifest-path python/Cargo.toml --out "$dist"
+"$scratch/maturin/bin/maturin" sdist --manifest-path python/Cargo.toml --out "$dist"
 # It knows no repository: it carries what the crate does, which says from which commit it is.
 sdist="$dist/tautrope-$version.tar"
 mkdir "$scratch/tautrope-$version"
