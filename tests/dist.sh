@@ -49,22 +49,38 @@ say "the wheel and the source distribution"
 python="${PYTHON:-python3}"
 "$python" -m venv "$scratch/maturin"
 "$scratch/maturin/bin/python" -m pip install --quiet maturin
-"$scratch/maturin/bin/maturin" build --quiet --release --locked --sdist --interpreter "$scratch/maturin/bin/python" \
-    --manifest-path python/Cargo.toml --out "$dist"
+"$scratch/maturin/bin/maturin" sdist --manifest-path python/Cargo.toml --out "$dist"
+# It knows no repository: it carries what the crate does, which says from which commit it is.
+sdist="$dist/tautrope-$version.tar"
+mkdir "$scratch/tautrope-$version"
+cp "$scratch/crate/tautline-$version/.cargo_vcs_info.json" "$scratch/tautrope-$version"
+rm -f "$sdist"
+gunzip "$sdist.gz"
+tar --append -f "$sdist" -C "$scratch" "tautrope-$version/.cargo_vcs_info.json"
+gzip -n "$sdist"
+# The wheel is built of nothing else.
+tar -xf "$sdist.gz" -C "$scratch"
+(cd "$scratch/tautrope-$version" && "$scratch/maturin/bin/maturin" build --quiet --release --locked \
+    --interpreter "$scratch/maturin/bin/python" --out "$dist")
 for handed in "$dist/tautrope-$version"-cp310-abi3-*.whl "$dist/tautrope-$version.tar.gz"; do
     say "installing $(basename "$handed")"
     venv="$scratch/venv-${handed##*.}"
     "$python" -m venv "$venv"
     "$venv/bin/python" -m pip install --quiet "$handed" pandas
-    "$venv/bin/python" - python/README.md "$scratch" <<'PY'
-import os, re, sys
+    "$venv/bin/python" - python/README.md "$scratch" "$commit" <<'PY'
+import json, os, re, sys
 from importlib.metadata import distribution
+
+import tautrope
 
 block = re.search(r"```python\n(.*?)```", open(sys.argv[1]).read(), re.DOTALL).group(1)
 os.chdir(sys.argv[2])
 exec(compile(block, "README.md", "exec"))
 files = [str(file) for file in distribution("tautrope").files]
 assert sum("LICENSE-" in file for file in files) == 2, files
+answer = tautrope.Study(scene="rooms", walk={"kind": "uniform", "step": 0.2, "steps": 9}).run(progress=False)
+built_from = json.loads((answer.folder / "run.json").read_text())["commit"]
+assert built_from.removesuffix("-changed") == sys.argv[3], built_from
 PY
 done
 say "all are in $dist"

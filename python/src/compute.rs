@@ -21,7 +21,7 @@ const LOOK: Duration = Duration::from_millis(50);
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
 /// Taken only by who holds the interpreter's lock, as does who forks: so nobody holds this one then.
-fn pool(_: Python<'_>) -> Result<Arc<ThreadPool>, Fault> {
+pub(crate) fn pool(_: Python<'_>) -> Result<Arc<ThreadPool>, Fault> {
     let mut pool = POOL.lock().unwrap_or_else(PoisonError::into_inner);
     match &*pool {
         Some((process, pool)) if *process == process::id() => return Ok(pool.clone()),

@@ -4,11 +4,15 @@
 mod arrow_in;
 mod compute;
 mod fault;
+mod going;
 mod live;
+mod parts;
 mod ropes;
 mod scene;
+mod steps;
 mod stored;
 mod study;
+mod sweep;
 mod table;
 mod traces;
 
@@ -19,11 +23,17 @@ mod _tautrope {
     #[pymodule_export]
     use super::live::LiveRope;
     #[pymodule_export]
+    use super::parts::{are_enough, merge_parts};
+    #[pymodule_export]
     use super::ropes::Ropes;
     #[pymodule_export]
     use super::scene::{Scene, built_in_step, engines};
     #[pymodule_export]
+    use super::steps::StepStream;
+    #[pymodule_export]
     use super::study::{Study, example_study, look_at_study, resume_study};
+    #[pymodule_export]
+    use super::sweep::{Sweep, conclude_sweep, has_sweep, look_at_sweep, resume_sweep, status_of};
     #[pymodule_export]
     use super::table::Table;
     #[pymodule_export]

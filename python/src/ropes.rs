@@ -9,16 +9,18 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
-use tautline::engine::Engine;
-use tautline::output::{event_batches, result_batches, write_events, write_results};
+use tautline::engine::{Engine, Precision, Reference};
+use tautline::output::{StepWriter, event_batches, result_batches, step_batches, write_events, write_results};
 use tautline::picture::{Drawing, Theme};
 use tautline::rope::{TraceRecord, replay};
-use tautline::scene::Model;
+use tautline::scene::{Centre, Model};
+use tautline::study::Study;
 use tautline::trace::{SettledTrace, Trace, settle_owned};
 
 use crate::compute::{self, Work};
 use crate::fault::Fault;
 use crate::scene::{Scene, settle_all};
+use crate::steps::StepStream;
 use crate::stored::{Pickled, Stored};
 use crate::table::{Table, pairs};
 
@@ -28,30 +30,74 @@ const POINTS: usize = 1 << 25;
 /// The ropes of many traces.
 #[pyclass(module = "tautrope._tautrope", frozen)]
 pub(crate) struct Ropes {
-    model: Arc<Model>,
+    of: Arc<Kept>,
+    results: OnceLock<Table>,
+    steps: OnceLock<Table>,
+}
+
+/// What is kept of an evaluation.
+pub(crate) struct Kept {
+    pub(crate) model: Arc<Model>,
     /// What evaluated them.
     engine: String,
-    records: Vec<TraceRecord>,
+    pub(crate) records: Vec<TraceRecord>,
     /// Where the free ends came to rest.
     ends: Vec<DVec2>,
     /// The traces, unless only results are kept; then records have no events.
     settled: Option<Vec<SettledTrace>>,
-    results: OnceLock<Table>,
+    /// About what turns are counted, step by step; all obstacles with a label unless they were named.
+    centres: Option<Vec<Centre>>,
+}
+
+/// What is asked of an evaluation.
+pub(crate) struct Asked {
+    /// Whether traces that break the rules are marked, where otherwise the first ends it.
+    pub(crate) flag: bool,
+    /// Whether what happens step by step is kept.
+    pub(crate) keep: bool,
+    /// Whether the rope after every step is wanted.
+    pub(crate) steps: bool,
+    /// About what turns are counted then, if obstacles are named.
+    pub(crate) centres: Option<Vec<Centre>>,
+}
+
+impl Kept {
+    /// The traces, if what happened step by step is kept.
+    pub(crate) fn settled(&self) -> Result<&[SettledTrace], Fault> {
+        let lost = || Fault::input("what happened step by step was not kept; evaluate with events=True");
+        self.settled.as_deref().ok_or_else(lost)
+    }
+
+    fn steps(&self) -> Result<Table, Fault> {
+        Ok(Table::of(step_batches(&self.model, self.settled()?, &self.records, &self.centres())))
+    }
+
+    fn centres(&self) -> Vec<Centre> {
+        self.centres.clone().unwrap_or_else(|| self.model.scene().labelled())
+    }
+}
+
+/// The obstacles with these names.
+pub(crate) fn called(model: &Model, names: &[String]) -> Result<Vec<Centre>, Fault> {
+    model.scene().called(names).map_err(|error| Fault::input(format!("about: {error}")))
 }
 
 impl Ropes {
+    fn new(of: Kept) -> Self {
+        Ropes { of: Arc::new(of), results: OnceLock::new(), steps: OnceLock::new() }
+    }
+
     /// Settles and evaluates.
     pub(crate) fn evaluated(
         model: &Arc<Model>,
         engine: &mut Box<dyn Engine>,
         on: String,
         traces: Vec<Trace>,
-        flag: bool,
-        keep: bool,
+        asked: Asked,
         work: &Work,
     ) -> Result<Self, Fault> {
         let settled = settle_all(model, traces, work)?;
-        if let (false, Some(first)) = (flag, settled.iter().find_map(|trace| trace.violation())) {
+        if let (false, Some(first)) = (asked.flag, settled.iter().find_map(|trace| trace.violation())) {
             let fault = Fault::from(*first);
             return Err(fault.and("on_violation=\"flag\" marks such traces and goes on"));
         }
@@ -68,19 +114,35 @@ impl Ropes {
             rest = &rest[count..];
         }
         let ends = settled.iter().map(|trace| trace.points().last().copied().unwrap_or(model.anchor())).collect();
-        let mut ropes =
-            Ropes { model: model.clone(), engine: on, records, ends, settled: Some(settled), results: OnceLock::new() };
-        if !keep {
-            ropes.results = OnceLock::from(Table::of(result_batches(model.scene(), &ropes.records)));
-            ropes.records.iter_mut().for_each(|record| record.events = Vec::new());
-            ropes.settled = None;
+        let (settled, centres) = (Some(settled), asked.centres);
+        let mut kept = Kept { model: model.clone(), engine: on, records, ends, settled, centres };
+        let steps = asked.steps.then(|| kept.steps()).transpose()?;
+        let mut results = OnceLock::new();
+        if !asked.keep {
+            results = OnceLock::from(Table::of(result_batches(model.scene(), &kept.records)));
+            kept.records.iter_mut().for_each(|record| record.events = Vec::new());
+            kept.settled = None;
         }
-        Ok(ropes)
+        let steps = steps.map_or_else(OnceLock::new, OnceLock::from);
+        Ok(Ropes { of: Arc::new(kept), results, steps })
+    }
+
+    /// The rope of a trace of a study, drawn again.
+    pub(crate) fn again(study: &Study, trace: u64, work: &Work) -> Result<Self, Fault> {
+        if study.plan().run.precision == Precision::Fast {
+            let what = "the study's ropes were decided in f32; draw them again with `tautline study replay`";
+            return Err(Fault::new("StudyError", what));
+        }
+        let (settled, model) = (study.trace(trace)?, study.model(trace));
+        let mut engine = Reference::new(model.clone());
+        let records = engine.evaluate(std::slice::from_ref(&settled), &work.job)?;
+        let ends = vec![settled.points().last().copied().unwrap_or(model.anchor())];
+        let (engine, settled) = ("reference (f64) on 1 thread".to_owned(), Some(vec![settled]));
+        Ok(Ropes::new(Kept { model: model.clone(), engine, records, ends, settled, centres: None }))
     }
 
     fn settled(&self) -> Result<&[SettledTrace], Fault> {
-        let lost = || Fault::input("what happened step by step was not kept; evaluate with events=True");
-        self.settled.as_deref().ok_or_else(lost)
+        self.of.settled()
     }
 }
 
@@ -88,11 +150,11 @@ impl Ropes {
 impl Ropes {
     #[getter]
     fn engine(&self) -> &str {
-        &self.engine
+        &self.of.engine
     }
 
     fn __len__(&self) -> usize {
-        self.records.len()
+        self.of.records.len()
     }
 
     /// One row a trace.
@@ -100,14 +162,31 @@ impl Ropes {
         if let Some(table) = self.results.get() {
             return Ok(table.clone());
         }
-        let table = py.detach(|| Table::of(result_batches(self.model.scene(), &self.records)));
+        let table = py.detach(|| Table::of(result_batches(self.of.model.scene(), &self.of.records)));
         Ok(self.results.get_or_init(|| table).clone())
     }
 
     /// One row an event.
     fn events(&self, py: Python<'_>) -> PyResult<Table> {
         self.settled()?;
-        Ok(py.detach(|| Table::of(event_batches(self.model.scene(), &self.records))))
+        Ok(py.detach(|| Table::of(event_batches(self.of.model.scene(), &self.of.records))))
+    }
+
+    /// One row for the rope after every step.
+    fn steps(&self, py: Python<'_>) -> PyResult<Table> {
+        if let Some(table) = self.steps.get() {
+            return Ok(table.clone());
+        }
+        let table = compute::run(py, |_| self.of.steps(), |_, _| Ok(()))?;
+        Ok(self.steps.get_or_init(|| table).clone())
+    }
+
+    /// The same, made as it is read; turns are counted about other obstacles if they are named.
+    #[pyo3(signature = (about=None))]
+    fn stream_steps(&self, about: Option<Vec<String>>) -> PyResult<StepStream> {
+        self.settled()?;
+        let centres = about.map_or_else(|| Ok(self.of.centres()), |names| called(&self.of.model, &names))?;
+        Ok(StepStream { of: self.of.clone(), centres })
     }
 
     /// The rope's length after each step: offsets, and all lengths.
@@ -117,12 +196,12 @@ impl Ropes {
         let of = |(trace, record): (&SettledTrace, &TraceRecord)| {
             let ends = trace.ends();
             let mut lengths = Vec::with_capacity(ends.len());
-            replay(self.model.anchor(), self.model.vertices(), ends.len(), &record.events, |step, rope| {
+            replay(self.of.model.anchor(), self.of.model.vertices(), ends.len(), &record.events, |step, rope| {
                 lengths.push(rope.length(ends[step]));
             });
             lengths
         };
-        let work = |_: &Work| Ok(settled.par_iter().zip(&self.records).map(of).collect::<Vec<Vec<f64>>>());
+        let work = |_: &Work| Ok(settled.par_iter().zip(&self.of.records).map(of).collect::<Vec<Vec<f64>>>());
         let lengths = compute::run(py, work, |_, _| Ok(()))?;
         let offsets = offsets(lengths.iter().map(Vec::len));
         Ok((PyArray1::from_vec(py, offsets), PyArray1::from_vec(py, lengths.concat())))
@@ -130,13 +209,13 @@ impl Ropes {
 
     /// The taut ropes at the end: offsets, and the points of all, each from the anchor to the free end.
     fn lines<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyAny>)> {
-        let counts = self.records.iter().map(|record| record.wraps.len() + 2);
+        let counts = self.of.records.iter().map(|record| record.wraps.len() + 2);
         let offsets = offsets(counts);
         let line = |(record, end): (&TraceRecord, &DVec2)| {
             let turns = record.wraps.iter().map(|(at, _)| *at);
-            [self.model.anchor()].into_iter().chain(turns).chain([*end]).collect::<Vec<_>>()
+            [self.of.model.anchor()].into_iter().chain(turns).chain([*end]).collect::<Vec<_>>()
         };
-        let all = self.records.iter().zip(&self.ends).flat_map(line);
+        let all = self.of.records.iter().zip(&self.of.ends).flat_map(line);
         Ok((PyArray1::from_vec(py, offsets), pairs(py, all.flat_map(|p| p.to_array()).collect::<Vec<f64>>())?))
     }
 
@@ -147,9 +226,9 @@ impl Ropes {
         if step >= ends.len() {
             return Err(Fault::input(format!("there is no step {step}; the trace has {} points", ends.len())).into());
         }
-        let mut points = vec![self.model.anchor()];
-        let (vertices, events) = (self.model.vertices(), &self.records[place].events);
-        replay(self.model.anchor(), vertices, step + 1, events, |k, rope| {
+        let mut points = vec![self.of.model.anchor()];
+        let (vertices, events) = (self.of.model.vertices(), &self.of.records[place].events);
+        replay(self.of.model.anchor(), vertices, step + 1, events, |k, rope| {
             if k == step {
                 points.extend(rope.taut(ends[step]).iter().map(|contact| contact.at));
             }
@@ -167,12 +246,23 @@ impl Ropes {
     }
 
     /// Writes results and events as the program does.
-    fn write(&self, py: Python<'_>, results: Option<PathBuf>, events: Option<PathBuf>) -> PyResult<()> {
-        self.settled()?;
-        let scene = self.model.scene();
+    fn write(
+        &self,
+        py: Python<'_>,
+        results: Option<PathBuf>,
+        events: Option<PathBuf>,
+        steps: Option<PathBuf>,
+    ) -> PyResult<()> {
+        let settled = self.settled()?;
+        let scene = self.of.model.scene();
         let write = |_: &Work| {
-            results.iter().try_for_each(|path| write_results(path, scene, &self.records))?;
-            Ok(events.iter().try_for_each(|path| write_events(path, scene, &self.records))?)
+            results.iter().try_for_each(|path| write_results(path, scene, &self.of.records))?;
+            events.iter().try_for_each(|path| write_events(path, scene, &self.of.records))?;
+            steps.iter().try_for_each(|path| {
+                let mut file = StepWriter::create(path, &self.of.model, &self.of.centres())?;
+                file.write_all(settled, &self.of.records)?;
+                Ok(file.finish()?)
+            })
         };
         compute::run(py, write, |_, _| Ok(()))
     }
@@ -186,9 +276,9 @@ impl Ropes {
             Some(true) => Theme::Dark,
             Some(false) => Theme::Light,
         };
-        let mut drawing = Drawing::new(&self.model).theme(theme);
+        let mut drawing = Drawing::new(&self.of.model).theme(theme);
         for place in places {
-            let record = self.records.get(place).ok_or_else(|| Fault::input(format!("there is no rope {place}")))?;
+            let record = self.of.records.get(place).ok_or_else(|| Fault::input(format!("there is no rope {place}")))?;
             drawing = drawing.with(&settled[place], record);
         }
         let drawing = step.into_iter().fold(drawing, Drawing::at_step);
@@ -199,13 +289,18 @@ impl Ropes {
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let points = |t: &SettledTrace| (t.id(), t.ends().iter().flat_map(|p| p.to_array()).collect());
         let pickled = Pickled {
-            engine: self.engine.clone(),
-            traces: self.settled.as_ref().map(|settled| settled.iter().map(points).collect()),
-            ends: self.ends.iter().map(|end| end.to_array()).collect(),
-            records: self.records.iter().map(Stored::from).collect(),
-            results: match &self.settled {
+            engine: self.of.engine.clone(),
+            traces: self.of.settled.as_ref().map(|settled| settled.iter().map(points).collect()),
+            ends: self.of.ends.iter().map(|end| end.to_array()).collect(),
+            records: self.of.records.iter().map(Stored::from).collect(),
+            results: match &self.of.settled {
                 Some(_) => None,
                 None => self.results.get().map(Table::ipc).transpose()?,
+            },
+            centres: self.of.centres.as_ref().map(|all| all.iter().map(|c| (c.name.clone(), c.vertex)).collect()),
+            steps: match &self.of.settled {
+                Some(_) => None,
+                None => self.steps.get().map(Table::ipc).transpose()?,
             },
         };
         Ok(PyBytes::new(py, &pickled.bytes()?))
@@ -224,15 +319,20 @@ impl Ropes {
             Ok(pickled.traces.as_ref().map(|traces| traces.par_iter().map(point).collect()))
         };
         let settled = compute::run(py, settle, |_, _| Ok(()))?;
-        let results = pickled.results.as_deref().map(Table::from_ipc).transpose()?;
-        Ok(Ropes {
+        let table = |bytes: &Option<Vec<u8>>| {
+            let table = bytes.as_deref().map(Table::from_ipc).transpose()?;
+            Ok::<_, Fault>(table.map_or_else(OnceLock::new, OnceLock::from))
+        };
+        let (results, steps) = (table(&pickled.results)?, table(&pickled.steps)?);
+        let kept = Kept {
             engine: pickled.engine,
             records: pickled.records.iter().map(Stored::record).collect(),
             ends: pickled.ends.iter().map(|&end| end.into()).collect(),
             settled,
-            results: results.map_or_else(OnceLock::new, OnceLock::from),
+            centres: pickled.centres.map(|all| all.into_iter().map(|(name, vertex)| Centre { name, vertex }).collect()),
             model,
-        })
+        };
+        Ok(Ropes { of: Arc::new(kept), results, steps })
     }
 }
 

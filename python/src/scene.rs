@@ -20,7 +20,7 @@ use tautline::trace::{SettledTrace, Trace, ViolationKind, settle_owned};
 
 use crate::compute::{self, Work};
 use crate::fault::Fault;
-use crate::ropes::Ropes;
+use crate::ropes::{Asked, Ropes, called};
 use crate::table::pairs;
 use crate::traces::Traces;
 
@@ -56,6 +56,11 @@ impl Scene {
             None => Tied::Loose(scene),
         };
         Ok(Scene::of(tied))
+    }
+
+    /// The scene of a model.
+    pub(crate) fn of_model(model: Arc<Model>) -> Self {
+        Scene::of(Tied::Model(model))
     }
 
     fn of(tied: Tied) -> Self {
@@ -277,7 +282,9 @@ impl Scene {
     }
 
     /// The ropes of all traces. A trace that breaks the rules ends it, or is marked if `flag` says so. With `keep`,
-    /// what happened step by step is kept.
+    /// what happened step by step is kept; with `steps`, the rope after every step is told, and turns about obstacles.
+    #[allow(clippy::too_many_arguments)] // what the package takes by their names
+    #[pyo3(signature = (traces, engine, precision, flag, keep, steps=false, about=None))]
     fn evaluate(
         &self,
         py: Python<'_>,
@@ -286,13 +293,17 @@ impl Scene {
         precision: &str,
         flag: bool,
         keep: bool,
+        steps: bool,
+        about: Option<Vec<String>>,
     ) -> PyResult<Ropes> {
         let (model, precision) = (self.model()?, self::precision(precision)?);
+        let centres = about.map(|names| called(model, &names)).transpose()?;
+        let asked = Asked { flag, keep, steps, centres };
         let kept = self.engine(py, engine, precision)?;
         let traces = traces.take()?;
         compute::locked(py, &kept, |py, kept| {
             let (engine, on) = (&mut kept.engine, kept.on.clone());
-            compute::run(py, |work| Ropes::evaluated(model, engine, on, traces, flag, keep, work), |_, _| Ok(()))
+            compute::run(py, |work| Ropes::evaluated(model, engine, on, traces, asked, work), |_, _| Ok(()))
         })
     }
 }

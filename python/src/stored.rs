@@ -69,6 +69,10 @@ pub(crate) struct Pickled {
     pub(crate) records: Vec<Stored>,
     /// The table of results, where it cannot be made of the records any more.
     pub(crate) results: Option<Vec<u8>>,
+    /// About what turns are counted, if that was said: names and wall ends.
+    pub(crate) centres: Option<Vec<(String, u32)>>,
+    /// The table of steps, where it cannot be made any more.
+    pub(crate) steps: Option<Vec<u8>>,
 }
 
 impl Pickled {

@@ -1,44 +1,23 @@
 //! Studies, run in their folders.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process;
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use pyo3::prelude::*;
-use tautline::engine::Engine;
-use tautline::output::{WholeFile, folder_of};
-use tautline::session::{Computed, Folder, Session, look};
+use tautline::output::folder_of;
+use tautline::session::{Folder, Session, look};
 use tautline::study::{self, EXAMPLE, Plan, Shard};
 
 use crate::compute::{self, Work};
 use crate::fault::Fault;
-use crate::scene::open;
-
-/// What a scene is called that the package writes to a study's folder.
-const SCENE: &str = "scene.geojson";
-
-/// The process that ran a study first; 0 before that.
-static RAN: AtomicU32 = AtomicU32::new(0);
-
-/// Drawing has a thread of its own, which uses threads that a forked process has lost.
-fn refuse_forked() -> Result<(), Fault> {
-    let own = process::id();
-    match RAN.compare_exchange(0, own, Ordering::SeqCst, Ordering::SeqCst) {
-        Err(other) if other != own => Err(Fault::new(
-            "EngineError",
-            "this process was forked from one that had run a study; start it by spawn: \
-             multiprocessing.get_context(\"spawn\")",
-        )),
-        _ => Ok(()),
-    }
-}
+use crate::going::{self, Told, write_scene};
+use crate::ropes::Ropes;
+use crate::scene::Scene;
 
 /// A study that can be run.
 #[pyclass(module = "tautrope._tautrope", frozen)]
 pub(crate) struct Study {
-    study: Arc<study::Study>,
+    pub(crate) study: Arc<study::Study>,
     /// From where its files are named.
     base: PathBuf,
 }
@@ -78,6 +57,16 @@ impl Study {
         Ok(serde_json::to_string(self.study.plan()).map_err(|error| Fault::new("StudyError", error))?)
     }
 
+    /// The study in a folder.
+    #[staticmethod]
+    fn of_folder(py: Python<'_>, folder: PathBuf, base: Option<PathBuf>) -> PyResult<Self> {
+        let open = |_: &Work| {
+            let (study, _) = look(&folder, base.as_deref())?;
+            Ok(Study { study: Arc::new(study), base: base.clone().unwrap_or_else(|| folder.clone()) })
+        };
+        compute::run(py, open, |_, _| Ok(()))
+    }
+
     #[getter]
     fn identity(&self) -> &str {
         self.study.identity()
@@ -99,11 +88,49 @@ impl Study {
             let begun = Session::begin(folder.clone(), self.study.clone(), base, Shard::WHOLE);
             let begun = begun.inspect_err(|_| folder.take_back())?;
             if let Some(text) = scene {
-                write_scene(&out.join(SCENE), text)?;
+                write_scene(&out, text)?;
             }
             Ok(begun)
         };
-        go_on(py, begin, engine, progress)
+        going::to_the_end(py, begin, engine, &Told::all(progress))
+    }
+
+    /// How many blocks it has.
+    #[getter]
+    fn blocks(&self) -> u64 {
+        self.study.plan().blocks()
+    }
+
+    /// Does the blocks from `first` up to `end` in a folder of their own, as a part that can be merged with others.
+    #[pyo3(signature = (out, first, end, engine, progress))]
+    fn run_part(
+        &self,
+        py: Python<'_>,
+        out: PathBuf,
+        first: u64,
+        end: u64,
+        engine: Option<&str>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let part = Shard::WHOLE.within(first..end).ok_or_else(|| Fault::input("a part has a block at least"))?;
+        let begin = |_: &Work| {
+            let folder = Arc::new(Folder::make(&out)?);
+            // A study without files needs no folder of the machine on which it was made.
+            let base = if self.base.is_dir() { &self.base } else { &out };
+            Ok(Session::begin(folder, self.study.clone(), base, part)?)
+        };
+        going::through(py, begin, engine, &Told::all(progress), false).map(drop)
+    }
+
+    /// The rope of one of its traces, drawn again, and the scene in which it is.
+    fn replay(&self, py: Python<'_>, trace: u64) -> PyResult<(Scene, Ropes)> {
+        let plan = self.study.plan();
+        if !plan.is_given() && trace >= plan.run.count() {
+            let what = format!("there is no trace {trace}; the study's are 0 to {}", plan.run.count() - 1);
+            return Err(Fault::input(what).number("trace", trace).into());
+        }
+        let ropes = compute::run(py, |work| Ropes::again(&self.study, trace, work), |_, _| Ok(()))?;
+        Ok((Scene::of_model(self.study.model(trace).clone()), ropes))
     }
 }
 
@@ -117,7 +144,7 @@ pub(crate) fn resume_study(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<String>> {
     let begin = |_: &Work| Ok(Session::resume(Arc::new(Folder::open(&folder)?), base.as_deref())?);
-    go_on(py, begin, engine, progress)
+    going::to_the_end(py, begin, engine, &Told::all(progress))
 }
 
 /// The summary of what is done of the study in a folder, as JSON. Whoever writes there is not disturbed.
@@ -128,53 +155,6 @@ pub(crate) fn look_at_study(py: Python<'_>, folder: PathBuf, base: Option<PathBu
         serde_json::to_string(&state.summary(&study)).map_err(|error| Fault::new("StudyError", error))
     };
     compute::run(py, look, |_, _| Ok(()))
-}
-
-/// Writes a scene's text, whole or not at all.
-fn write_scene(path: &Path, text: &str) -> Result<(), Fault> {
-    let mut file = WholeFile::create(path)?;
-    file.write_all(text.as_bytes()).map_err(|error| Fault::new("WriteError", error))?;
-    Ok(file.finish()?)
-}
-
-/// Runs a session to its end, and returns what is to be known of its folder.
-fn go_on(
-    py: Python<'_>,
-    begin: impl FnOnce(&Work) -> Result<Session, Fault> + Send,
-    engine: Option<&str>,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<Vec<String>> {
-    refuse_forked()?;
-    let session = compute::run(py, begin, |_, _| Ok(()))?;
-    let study = session.study().clone();
-    let prepare = |_: &Work| {
-        let mut engines: Vec<Box<dyn Engine>> = Vec::new();
-        let mut on = String::new();
-        for model in study.models() {
-            let opened = open(model, engine, study.plan().run.precision)?;
-            if !opened.kind.counts_events() {
-                let what = "does not count the same events as the other engines; give one of those for a study";
-                return Err(Fault::input(format!("engine: {} {what}", opened.kind.name)));
-            }
-            on = opened.on.to_string();
-            engines.push(opened.engine);
-        }
-        let left = session.prepare(Computed::by(&*engines[0], &on))?;
-        Ok((engines, left))
-    };
-    let prepared = compute::run(py, prepare, |_, _| Ok(()));
-    let (mut engines, left) = prepared.inspect_err(|_| session.folder().take_back())?;
-    let run = |work: &Work| {
-        let report = session.run(&mut engines, &work.job)?;
-        session.conclude(&report)?;
-        Ok(())
-    };
-    let watch = |py: Python<'_>, work: &Work| match &progress {
-        Some(progress) => progress.call1(py, (work.job.steps(), left.steps)).map(drop),
-        None => Ok(()),
-    };
-    compute::run(py, run, watch)?;
-    Ok(session.folder().notes().iter().map(ToString::to_string).collect())
 }
 
 /// What is wrong with a study that is no file: without the line and column of a text that nobody has seen.

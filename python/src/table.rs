@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
-use arrow_array::types::{Float64Type, UInt32Type, UInt64Type};
+use arrow_array::types::{Float64Type, Int64Type, UInt32Type, UInt64Type};
 use arrow_array::{Array, ArrayRef, ArrowPrimitiveType, RecordBatch, RecordBatchIterator, RecordBatchOptions};
 use arrow_ipc::reader::StreamReader;
 use arrow_ipc::writer::StreamWriter;
@@ -128,7 +128,8 @@ fn column<'py>(py: Python<'py>, kind: &DataType, arrays: &[ArrayRef]) -> PyResul
     match kind {
         DataType::UInt64 => Ok(numbers::<UInt64Type>(py, arrays)),
         DataType::UInt32 => Ok(numbers::<UInt32Type>(py, arrays)),
-        DataType::Float64 => Ok(numbers::<Float64Type>(py, arrays)),
+        DataType::Int64 => Ok(numbers::<Int64Type>(py, arrays)),
+        DataType::Float64 => Ok(floats(py, arrays)),
         DataType::Utf8 => texts(py, arrays),
         DataType::Struct(_) => points(py, arrays),
         DataType::List(of) => {
@@ -153,9 +154,17 @@ fn numbers<'py, T: ArrowPrimitiveType>(py: Python<'py>, arrays: &[ArrayRef]) -> 
 where
     T::Native: Element + Copy,
 {
-    let all: Vec<T::Native> =
-        arrays.iter().flat_map(|array| array.as_primitive::<T>().values().iter().copied()).collect();
-    PyArray1::from_vec(py, all).into_any()
+    let slices: Vec<&[T::Native]> = arrays.iter().map(|array| &array.as_primitive::<T>().values()[..]).collect();
+    PyArray1::from_vec(py, slices.concat()).into_any()
+}
+
+/// Numbers with NaN for a missing one.
+fn floats<'py>(py: Python<'py>, arrays: &[ArrayRef]) -> Bound<'py, PyAny> {
+    if arrays.iter().all(|array| array.null_count() == 0) {
+        return numbers::<Float64Type>(py, arrays);
+    }
+    let all = arrays.iter().flat_map(|array| array.as_primitive::<Float64Type>()).map(|x| x.unwrap_or(f64::NAN));
+    PyArray1::from_vec(py, all.collect()).into_any()
 }
 
 /// Texts as numbers of a list of different ones; a missing text is None there.

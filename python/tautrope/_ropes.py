@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _tautrope as _core
 from ._errors import InputError
-from ._table import Table, split
+from ._table import StepStream, Table, split
 
 if TYPE_CHECKING:
     from ._scene import Scene
@@ -73,6 +73,40 @@ class Ropes:
         """One row for every wrap and unwrap, in order: ``trace``, ``step``, ``kind``, ``vertex``, ``x``, ``y``,
         ``side``."""
         return Table(self._core.events())
+
+    @cached_property
+    def steps(self) -> Table:
+        """One row for the rope after every step, in order: ``trace``, ``step``, where the free end is (``x``, ``y``),
+        the rope's ``length``, its ``contacts`` and ``turns``, its ``pull_x`` and ``pull_y`` (null for a rope of no
+        length), and ``winding_NAME`` for each obstacle of which `Scene.evaluate` was told by ``about``, or else for all
+        that have a label: how often the free end has gone all the way round it since the trace began.
+
+        The table is in memory: some 70 bytes a step and 8 for each obstacle. `stream_steps` makes it as it is read.
+
+        >>> import tautrope
+        >>> scene = tautrope.Scene([[[-1, 0], [1, 0]]], anchor=(0, -1))
+        >>> ropes = scene.evaluate([[(0, -1), (3, -1), (3, 1), (0, 1)]], steps=True, about=[1])
+        >>> ropes.steps["turns"], ropes.steps["length"].round(3)
+        (array([0, 0, 0, 1], dtype=uint32), array([0.   , 3.   , 3.606, 2.828]))
+        """
+        return Table(self._core.steps())
+
+    def stream_steps(self, about: Iterable[str | int] | None = None) -> StepStream:
+        """The rows of `steps`, made as they are read: some 250,000 at a time are in memory, and one trace at least.
+
+        Args:
+            about: Obstacles about which turns are counted, by label or number of a wall end; as for `Scene.evaluate`
+                without it.
+
+        >>> import tautrope
+        >>> scene = tautrope.Scene.built_in("rooms")
+        >>> ropes = scene.evaluate(scene.walks(1000, steps=300))
+        >>> longest = max(table["length"].max() for table in ropes.stream_steps())
+        >>> bool(longest == ropes["max_length"].max())
+        True
+        """
+        names = names_of(about)
+        return StepStream(self._core.stream_steps(names), (Ropes.stream_steps, (self, names)))
 
     @property
     def columns(self) -> list[str]:
@@ -156,14 +190,18 @@ class Ropes:
         return place
 
     def write(
-        self, results: str | os.PathLike[str] | None = None, events: str | os.PathLike[str] | None = None
+        self,
+        results: str | os.PathLike[str] | None = None,
+        events: str | os.PathLike[str] | None = None,
+        steps: str | os.PathLike[str] | None = None,
     ) -> None:
-        """Writes one row a trace to ``results`` and one row an event to ``events``: ``.parquet``, ``.csv`` or
-        ``.jsonl``.
+        """Writes one row a trace to ``results``, one row an event to ``events`` and one row a step to ``steps``:
+        ``.parquet``, ``.csv`` or ``.jsonl``.
 
-        The files are those of ``tautline eval --out --events``, to the byte.
+        The files are those of ``tautline eval --out --events --steps``, to the byte. Steps are written as they are
+        made, in bounded memory.
         """
-        self._core.write(*(None if path is None else Path(path) for path in (results, events)))
+        self._core.write(*(None if path is None else Path(path) for path in (results, events, steps)))
 
     def svg(self, *traces: int, step: int | None = None, dark: bool | None = None) -> Picture:
         """The picture of up to six traces and their ropes as SVG, after a step or at the end.
@@ -192,6 +230,15 @@ class Ropes:
 
     def __repr__(self) -> str:
         return f"<Ropes: {len(self)} traces, engine {self.engine}>"
+
+
+def names_of(about: Iterable[str | int] | None) -> list[str] | None:
+    """Obstacles as the compiled part takes them: all by name."""
+    if about is None:
+        return None
+    if isinstance(about, str):
+        raise InputError(f"about: give a list of names, [{about!r}]")
+    return [str(name) for name in about]
 
 
 def _restored(scene: Scene, state: bytes) -> Ropes:

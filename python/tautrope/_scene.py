@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _tautrope as _core
 from ._errors import InputError, ReadError
-from ._ropes import Ropes
+from ._ropes import Ropes, names_of
 from ._traces import traces_of
 
 #: What a point may be given as.
@@ -225,6 +225,8 @@ class Scene:
         precision: str = "certified",
         on_violation: str = "error",
         events: bool = True,
+        steps: bool = False,
+        about: Iterable[str | int] | None = None,
     ) -> Ropes:
         """The taut ropes of traces: the points through which the free end is dragged.
 
@@ -243,17 +245,23 @@ class Scene:
             on_violation: ``error`` raises at the first trace that crosses a wall; ``flag`` marks such traces in the
                 column ``status``.
             events: Whether what happens step by step is kept. Without it there are results only, in less memory.
+            steps: Whether the rope after every step is told at once, as `Ropes.steps`: a table of one row a step. With
+                ``events=False`` that is all that is kept of the steps. Without it `Ropes.steps` makes the table when it
+                is asked for, and `Ropes.stream_steps` without ever holding all of it.
+            about: Of which obstacles `Ropes.steps` counts how often the free end has gone round them: their labels, or
+                numbers of wall ends as in `Scene.vertices`. Without it all obstacles that have a label.
 
         Raises:
             ViolationError: A step crosses a wall; its fields say which.
-            InputError: Traces that cannot be used.
+            InputError: Traces that cannot be used, or an obstacle that is not there.
         """
         if on_violation not in ("error", "flag"):
             raise InputError("on_violation is error or flag")
         if self.anchor is None:
             raise InputError("the scene has no anchor; give one: scene.tied((x, y))")
         name = None if engine in (None, "auto") else engine
-        core = self._core.evaluate(traces_of(traces), name, precision, on_violation == "flag", events)
+        names = names_of(about)
+        core = self._core.evaluate(traces_of(traces), name, precision, on_violation == "flag", events, steps, names)
         return Ropes(core, self)
 
     def check(self, traces: Any) -> list[Violation]:

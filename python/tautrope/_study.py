@@ -2,48 +2,21 @@
 
 from __future__ import annotations
 
-import html
 import json
 import os
-import sys
 import tempfile
-import time
-import warnings
-from collections.abc import Callable, Mapping
-from functools import cached_property
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from . import _tautrope as _core
+from ._answer import Answer
 from ._errors import InputError, StudyError
+from ._folders import SCENE, SWEEP, base_of
+from ._progress import Progress, Said, warn
 from ._scene import Scene
-from ._table import Table
-
-#: Told how many steps are done, and of how many.
-Progress = Callable[[int, int], Any]
-
-#: What a scene of one's own is called in a study's folder.
-_SCENE = "scene.geojson"
-
-
-class Estimate(NamedTuple):
-    """A number with its interval, at the study's confidence (95 % unless it says otherwise).
-
-    Attributes:
-        value: The number.
-        low: Where the interval begins; None where the traces are too few to say.
-        high: Where it ends; None where they are too few.
-    """
-
-    value: float
-    low: float | None
-    high: float | None
-
-    def __str__(self) -> str:
-        low, high = (f"{end:.4g}" if end is not None else "?" for end in (self.low, self.high))
-        return f"{self.value:.4g} ({low} to {high})"
 
 
 class Study:
@@ -52,21 +25,29 @@ class Study:
     A plan has these sections, of which only ``scene`` and ``walk`` are needed (docs/studies.md explains all keys, and
     ``Study(...).plan`` shows them with what they are if left out):
 
-    - ``scene``: ``{"built_in": "rooms"}`` or ``{"file": "plan.svg"}``, with ``anchor`` if the file marks none
+    - ``scene``: ``{"built_in": "rooms"}`` or ``{"file": "plan.svg"}``, with ``anchor`` if the file marks none, or a
+      list of anchors from which walks start by turns
     - ``walk``: ``{"kind": ..., "step": length of a step, "steps": how many}``. Kinds are ``uniform`` (any direction),
       ``gaussian``, ``persistent`` (keeps its heading but for ``turn``), ``waypoints`` (drives from goal to goal), and
       ``given`` (the traces of ``file``)
-    - ``run``: ``{"traces": how many, "seed": a number, ...}``
-    - ``tallies``: what is counted: ``limits`` of lengths, ``map`` (cells along the longer side), ``confidence``, ...
+    - ``run``: ``{"traces": how many, "seed": a number, "block": traces that are counted as one, ...}``. Errors of means
+      and of differences come from how blocks differ, so have ten of them or more
+    - ``tallies``: what is counted: ``limits`` of lengths, ``map`` (cells along the longer side), ``confidence``,
+      ``anchors`` (whether `Answer.anchors` tells them apart), ...
     - ``until``: when to stop earlier: ``relative_error``, ``seconds``
-    - ``outputs``: what is written besides: ``traces`` (one row a trace), ``pictures``
+    - ``outputs``: what is written besides: ``traces`` (one row a trace), ``steps`` and ``points`` (of how many traces,
+      or of which: `Answer.steps`, `Answer.points`), ``pictures``
+    - ``sweep``: keys with a list of values each, ``{"walk.step": [0.2, 0.4]}``: the plan is a `Sweep` then, whose
+      ``run`` gives a `SweepAnswer`
+
+    `tautrope.dask.run` runs a study on a Dask cluster.
 
     Args:
         plan: A study's file (``.toml``), or a dict with the same sections; see docs/studies.md for all keys. Without it
             only what the keywords say.
         base: The folder from which the plan's files are named, if it is no file: the current one without it.
-        sections: Sections of the plan: ``scene``, ``walk``, ``run``, ``tallies``, ``until``, ``outputs``. ``scene`` may
-            be a `Scene`, too, or the name of a built-in one.
+        sections: Sections of the plan: ``scene``, ``walk``, ``run``, ``tallies``, ``until``, ``outputs``, ``sweep``.
+            ``scene`` may be a `Scene`, too, or the name of a built-in one.
 
     >>> import tautrope
     >>> scene = tautrope.Scene([[[-1, 0], [1, 0]], [[3, 3], [5, 1]]], anchor=(0, -1))
@@ -77,6 +58,22 @@ class Study:
     True
     """
 
+    def __new__(
+        cls,
+        plan: Mapping[str, Any] | str | os.PathLike[str] | None = None,
+        *,
+        base: str | os.PathLike[str] | None = None,
+        **sections: Any,
+    ) -> Study:
+        """A plan with a section ``sweep`` makes a `Sweep`."""
+        is_file = plan is not None and not isinstance(plan, Mapping)
+        is_swept = _core.has_sweep(Path(plan)) if is_file else "sweep" in {**(plan or {}), **sections}  # type: ignore
+        if cls is Study and is_swept:
+            from ._sweep import Sweep
+
+            return object.__new__(Sweep)
+        return object.__new__(cls)
+
     def __init__(
         self,
         plan: Mapping[str, Any] | str | os.PathLike[str] | None = None,
@@ -86,34 +83,50 @@ class Study:
     ) -> None:
         #: Where a study without a folder of its own is run; it goes with the study and its answers.
         self._room: tempfile.TemporaryDirectory[str] | None = None
+        #: The text of a scene that is no file of the user's.
         self._scene: str | None = None
         if plan is not None and not isinstance(plan, Mapping):
             if sections or base is not None:
                 raise InputError("give a study's file, or its sections, not both")
-            self._core = _core.Study.of_file(Path(plan))
+            #: From where its files are named.
+            self._base = Path(plan).absolute().parent
+            self._open_file(Path(plan))
             return
         whole = {**(plan or {}), **sections}
-        folder = Path(base) if base is not None else Path.cwd()
+        self._base = Path(base).absolute() if base is not None else Path.cwd()
         if isinstance(whole.get("scene"), str):
             whole["scene"] = {"built_in": whole["scene"]}
         if isinstance(whole.get("scene"), Scene):
+            whole["scene"] = self._take(whole["scene"])
+        self._open(whole)
+
+    def _take(self, scene: Scene) -> dict[str, Any]:
+        """Keeps a scene of one's own, and says where it is."""
+        self._room = tempfile.TemporaryDirectory(prefix="tautrope-")
+        self._base = Path(self._room.name)
+        scene.write(self._base / SCENE)
+        self._scene = (self._base / SCENE).read_text()
+        return {"file": SCENE}
+
+    def _keep(self, base: str, scene: str | None) -> None:
+        """What a pickle says of where files are."""
+        self._room, self._scene, self._base = None, scene, Path(base)
+        if scene is not None:
             self._room = tempfile.TemporaryDirectory(prefix="tautrope-")
-            folder = Path(self._room.name)
-            file = folder / _SCENE
-            whole["scene"].write(file)
-            self._scene = file.read_text()
-            whole["scene"] = {"file": _SCENE}
-        try:
-            text = json.dumps(whole, default=_plain)
-        except TypeError as error:
-            raise StudyError(f"the plan: {error}") from None
-        self._core = _core.Study.of_text(text, True, folder)
+            self._base = Path(self._room.name)
+            (self._base / SCENE).write_text(scene)
+
+    def _open_file(self, path: Path) -> None:
+        self._core = _core.Study.of_file(path)
+
+    def _open(self, plan: dict[str, Any]) -> None:
+        self._core = _core.Study.of_text(as_json(plan), True, self._base)
 
     @classmethod
     def example(cls) -> Study:
         """The study that ``tautline study run`` runs without a file."""
-        study = cls.__new__(cls)
-        study._room, study._scene = None, None
+        study = object.__new__(Study)
+        study._room, study._scene, study._base = None, None, Path.cwd()
         study._core = _core.Study.of_text(_core.example_study(), False, Path.cwd())
         return study
 
@@ -144,15 +157,18 @@ class Study:
             progress: Whether to say on stderr how far it is; or a function that is told the steps done and of how many.
             engine: ``cpu``, ``gpu`` or ``reference``; without it the one that suits the machine.
         """
-        if out is None:
-            if self._room is None:
-                self._room = tempfile.TemporaryDirectory(prefix="tautrope-")
-            folder = Path(self._room.name, "study")
-        else:
-            folder = Path(out)
-        with _Said(progress) as said:
-            _warn(self._core.run(folder, engine, said, self._scene))
-        return Answer(folder, self._room if out is None else None)
+        folder, room = self._place(out)
+        with Said(progress) as said:
+            warn(self._core.run(folder, engine, said, self._scene))
+        return Answer(folder, room)
+
+    def _place(self, out: str | os.PathLike[str] | None) -> tuple[Path, Any]:
+        """The folder to run in, and what keeps it for as long as it is needed."""
+        if out is not None:
+            return Path(out), None
+        if self._room is None:
+            self._room = tempfile.TemporaryDirectory(prefix="tautrope-")
+        return Path(self._room.name, "study"), self._room
 
     @staticmethod
     def resume(
@@ -162,7 +178,8 @@ class Study:
         progress: bool | Progress = True,
         engine: str | None = None,
     ) -> Answer:
-        """Goes on with the study in a folder, whatever program began it, and returns the answer.
+        """Goes on with the study in a folder, whatever program began it, and returns the answer: with a sweep's folder
+        a `SweepAnswer`.
 
         Args:
             folder: The study's folder.
@@ -171,258 +188,31 @@ class Study:
             engine: As for `run`.
         """
         place = Path(folder)
-        with _Said(progress) as said:
-            _warn(_core.resume_study(place, _base(place, base), engine, said))
+        if (place / SWEEP).exists():
+            from ._sweep import Sweep
+
+            return Sweep.resume(place, base=base, progress=progress, engine=engine)  # type: ignore[return-value]
+        with Said(progress) as said:
+            warn(_core.resume_study(place, base_of(place, base), engine, said))
         return Answer(place)
+
+    def __reduce__(self) -> Any:
+        return _restored_study, (self._core.plan, str(self._base), self._scene)
 
     def __repr__(self) -> str:
         plan = self.plan
         return f"<Study: {plan['run']['traces']} traces, walk {plan['walk']['kind']}, scene {plan['scene']}>"
 
 
-class Answer:
-    """What a study says: its summary as tables, arrays and a page.
-
-    ``Answer(folder)`` opens the folder of any study that has ended, or is under way.
-    """
-
-    def __init__(self, folder: str | os.PathLike[str], room: Any = None) -> None:
-        #: The study's folder.
-        self.folder = Path(folder)
-        self._room = room
-        file = self.folder / "summary.json"
-        if file.exists():
-            self._text = file.read_text()
-        else:
-            self._text = _core.look_at_study(self.folder, _base(self.folder, None))
-        #: The summary, as ``summary.json`` has it; docs/studies.md explains all of it.
-        self.summary: dict[str, Any] = json.loads(self._text)
-
-    @property
-    def scalars(self) -> Any:
-        """The mean of each quantity with its standard error and interval, its deviation and extremes: a DataFrame of
-        pandas, by the quantity's name."""
-        rows = {
-            s["name"]: {
-                "mean": s["mean"]["value"],
-                "error": s["mean"]["error"],
-                "low": s["mean"]["low"],
-                "high": s["mean"]["high"],
-                "deviation": s["deviation"],
-                "min": s["min"],
-                "max": s["max"],
-            }
-            for s in self.summary["scalars"]
-        }
-        return _frame(rows, "name")
-
-    @property
-    def quantiles(self) -> Any:
-        """Below which value each share of the traces lies, with its interval: a DataFrame of pandas by name and
-        share."""
-        rows = {
-            (s["name"], q["share"]): {key: q["value"][key] for key in ("value", "low", "high")}
-            for s in self.summary["scalars"]
-            for q in s["quantiles"]
-        }
-        return _frame(rows, ["name", "share"])
-
-    def mean(self, name: str) -> Estimate:
-        """The mean of ``length``, ``max_length``, ``depth``, ``max_depth``, ``wraps`` or ``unwraps``."""
-        return _estimate(self._scalar(name)["mean"])
-
-    def quantile(self, name: str, share: float) -> Estimate:
-        """The value below which that share of the traces lies: 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95 or 0.99.
-
-        ``answer.quantile("max_length", 0.99)`` is how long a tether must be for 99 % of the walks to fit.
-        """
-        found = {q["share"]: q["value"] for q in self._scalar(name)["quantiles"]}
-        if share not in found:
-            raise InputError(f"no quantile {share} is in the summary; there are {', '.join(map(str, found))}")
-        return _estimate(found[share])
-
-    def difference(self, other: Answer, name: str = "max_length", share: float | None = None) -> Estimate:
-        """By how much the mean of this answer is above that of another, or with a ``share`` that quantile, with an
-        interval.
-
-        ``a.difference(b, "max_length", 0.99)`` is how much longer a tether must be at ``a`` for 99 % of the walks to
-        fit. It takes both answers for independent, so the studies must have different seeds. 0 outside of the interval
-        means that they differ.
-
-        Raises:
-            InputError: The studies have the same seed, or different confidences; there is no such quantile.
-        """
-        both = [of.mean(name) if share is None else of.quantile(name, share) for of in (self, other)]
-        (a, a_low, a_high), (b, b_low, b_high) = both
-        confidences = {answer.summary["study"]["tallies"]["confidence"] for answer in (self, other)}
-        if len(confidences) > 1:
-            raise InputError(f"the studies have different confidences: {sorted(confidences)}")
-        seeds = [answer.summary["study"]["run"]["seed"] for answer in (self, other)]
-        if seeds[0] == seeds[1]:
-            raise InputError(f"both studies have the seed {seeds[0]}; give one of them another, run={{\"seed\": ...}}")
-        if a_low is None or a_high is None or b_low is None or b_high is None:
-            return Estimate(a - b, None, None)
-        below = ((a - a_low) ** 2 + (b_high - b) ** 2) ** 0.5
-        above = ((a_high - a) ** 2 + (b - b_low) ** 2) ** 0.5
-        return Estimate(a - b, a - b - below, a - b + above)
-
-    def _scalar(self, name: str) -> dict[str, Any]:
-        scalars: dict[str, dict[str, Any]] = {s["name"]: s for s in self.summary["scalars"]}
-        if name not in scalars:
-            raise InputError(f"there is no {name}; give one of {', '.join(scalars)}")
-        return scalars[name]
-
-    def histogram(self, name: str = "max_length") -> Any:
-        """How many traces lie in each bin, and which share of them: a DataFrame of pandas. Bins without traces are left
-        out.
-
-        ``name`` is one of ``length``, ``max_length``, ``depth``, ``max_depth``, as far as the study counts them.
-        """
-        found = {h["name"]: h for h in self.summary["histograms"]}
-        if name not in found:
-            raise InputError(f"there is no histogram of {name}; there are {', '.join(found)}")
-        width = found[name]["width"]
-        rows = {
-            bin["bin"]: {
-                "from": bin["bin"] * width,
-                "to": (bin["bin"] + 1) * width,
-                "count": bin["count"],
-                "share": bin["share"]["value"],
-                "low": bin["share"]["low"],
-                "high": bin["share"]["high"],
-            }
-            for bin in found[name]["bins"]
-        }
-        return _frame(rows, "bin")
-
-    @property
-    def survival(self) -> Any:
-        """Which share of the ropes has never been longer than each limit, step by step: a DataFrame of pandas."""
-        rows = {
-            (curve["limit"], at["step"]): {key: at["share"][key] for key in ("value", "low", "high")}
-            for curve in self.summary["survival"]
-            for at in curve["curve"]
-        }
-        return _frame(rows, ["limit", "step"])
-
-    @property
-    def contacts(self) -> Any:
-        """The wall ends that ropes touch, the busiest first: a DataFrame of pandas by vertex. ``share`` is that of all
-        steps after which the rope has a contact with it, ``wraps`` how often a trace wraps round it."""
-        rows = {
-            c["vertex"]: {
-                "x": c["at"][0],
-                "y": c["at"][1],
-                **{
-                    f"{name}{end}": c[name][key]
-                    for name in ("share", "wraps")
-                    for end, key in (("", "value"), ("_low", "low"), ("_high", "high"))
-                },
-                **({"label": c["label"]} if c.get("label") is not None else {}),
-            }
-            for c in self.summary["contacts"]
-        }
-        return _frame(rows, "vertex")
-
-    @cached_property
-    def map(self) -> Any:
-        """The plane, cell by cell: a Dataset of xarray, or where that is not installed a dict of arrays.
-
-        Variables, each of shape (rows, columns): ``contacts``, with how many wall ends there the rope has a contact
-        after a step, on the mean; ``length``, how long the rope is on the mean while its free end is there; both with
-        ``_low`` and ``_high`` for the interval; ``visits``, how often a free end was seen there. ``x`` and ``y`` are
-        the middles of the cells. Where nothing came there is NaN, or 0 visits.
-        """
-        found = self.summary.get("map")
-        if found is None:
-            raise StudyError("the study counts no map: tallies.map is 0")
-        shape = found["rows"], found["columns"]
-        names = [f"{of}{end}" for of in ("contacts", "length") for end in ("", "_low", "_high")]
-        variables: dict[str, np.ndarray[Any, Any]] = {name: np.full(shape, np.nan) for name in names}
-        variables["visits"] = np.zeros(shape, dtype=np.int64)
-        for cell in found["cells"]:
-            at = divmod(cell["cell"], found["columns"])
-            variables["visits"][at] = cell["visits"]
-            for of in ("contacts", "length"):
-                for end, key in (("", "value"), ("_low", "low"), ("_high", "high")):
-                    if cell[of] is not None and cell[of][key] is not None:
-                        variables[of + end][at] = cell[of][key]
-        low_x, low_y = found["low"]
-        x = low_x + found["cell"] * (np.arange(found["columns"]) + 0.5)
-        y = low_y + found["cell"] * (np.arange(found["rows"]) + 0.5)
-        try:
-            import xarray
-        except ImportError:
-            return {**variables, "x": x, "y": y}
-        return xarray.Dataset({name: (("y", "x"), array) for name, array in variables.items()}, {"x": x, "y": y})
-
-    @cached_property
-    def traces(self) -> Table:
-        """One row a trace, as those of `Ropes`; only of studies with ``outputs = {"traces": True}``."""
-        file = self.folder / "traces.parquet"
-        if not file.exists():
-            raise StudyError('the study wrote no traces; give it outputs={"traces": True}')
-        return Table(_core.Table.of_parquet(file))
-
-    @property
-    def report(self) -> str:
-        """The page with all tables and pictures, as HTML; only of studies with ``outputs.pictures``."""
-        kept = self.__dict__.get("_page")
-        if kept is not None:
-            return str(kept)
-        file = self.folder / "report.html"
-        if not file.exists():
-            raise StudyError("the study wrote no page: it has not ended, or outputs.pictures is false")
-        return file.read_text()
-
-    def _repr_html_(self) -> str:
-        try:
-            page = self.report
-        except StudyError:
-            return f"<pre>{html.escape(repr(self))}</pre>"
-        # In a frame of its own: the page's style is none of the notebook's.
-        style = "width: 100%; height: 40em; border: 1px solid #ccc"
-        return f'<iframe srcdoc="{html.escape(page)}" style="{style}"></iframe>'
-
-    def __reduce__(self) -> Any:
-        rows = self.traces if (self.folder / "traces.parquet").exists() or "traces" in self.__dict__ else None
-        try:
-            page = self.report
-        except StudyError:
-            page = None
-        return _restored, (self.folder, self._text, rows, page)
-
-    def __repr__(self) -> str:
-        length = self.mean("max_length") if self.summary["traces"] else "unknown"
-        of = f"{self.summary['traces']} traces, {self.summary['stopped']}"
-        return f"<Answer: {of}, greatest rope length {length} on the mean>"
+def _restored_study(plan: str, base: str, scene: str | None) -> Study:
+    """A study that was pickled, with a scene of its own if it had one."""
+    study = object.__new__(Study)
+    study._keep(base, scene)
+    study._core = _core.Study.of_text(plan, True, study._base)
+    return study
 
 
-def _restored(folder: Path, text: str, rows: Table | None, page: str | None) -> Answer:
-    """An answer without its folder: on another machine, say."""
-    answer = Answer.__new__(Answer)
-    answer.folder, answer._room, answer._text, answer.summary = folder, None, text, json.loads(text)
-    answer.__dict__["_page"] = page
-    if rows is not None:
-        answer.__dict__["traces"] = rows
-    return answer
-
-
-def _estimate(found: Mapping[str, Any]) -> Estimate:
-    return Estimate(found["value"], found["low"], found["high"])
-
-
-def _frame(rows: Mapping[Any, Mapping[str, Any]], index: str | list[str]) -> Any:
-    import pandas
-
-    keys = list(rows)
-    by = pandas.Index(keys, name=index) if isinstance(index, str) else pandas.MultiIndex.from_tuples(keys, names=index)
-    # An end of an interval that nobody knows is no number.
-    known = [{key: np.nan if value is None else value for key, value in row.items()} for row in rows.values()]
-    return pandas.DataFrame(known, index=by)
-
-
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Numbers and arrays of numpy, and paths, as JSON has them."""
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
@@ -431,41 +221,8 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} cannot stand in a plan")
 
 
-def _base(folder: Path, base: str | os.PathLike[str] | None) -> Path | None:
-    """From where a study's files are named: one with a scene of its own has that in its folder."""
-    if base is not None:
-        return Path(base)
-    return folder if (folder / _SCENE).exists() else None
-
-
-def _warn(notes: list[str]) -> None:
-    for note in notes:
-        if " holds the answer of this study already" not in note and " traces of this study already" not in note:
-            warnings.warn(note, stacklevel=3)
-
-
-class _Said:
-    """Says on stderr how far a study is, in one line."""
-
-    def __init__(self, progress: bool | Progress) -> None:
-        self._tell = progress if callable(progress) else None
-        self._is_on = progress is True
-        self._start = self._last = time.monotonic()
-        self._written = False
-
-    def __enter__(self) -> Progress | None:
-        return self._tell or (self._say if self._is_on else None)
-
-    def _say(self, done: int, of: int) -> None:
-        now = time.monotonic()
-        if now - self._last < 0.5:
-            return
-        self._last, self._written = now, True
-        share = f"{100 * done / of:.0f} %" if of else f"{done:,} steps"
-        left = (now - self._start) * (of - done) / done if of and done else None
-        more = f", {left:.0f} s left" if left is not None else ""
-        print(f"\rtautrope: {share}{more}      ", end="", file=sys.stderr, flush=True)
-
-    def __exit__(self, *_: object) -> None:
-        if self._written:
-            print("\r" + " " * 40 + "\r", end="", file=sys.stderr, flush=True)
+def as_json(plan: Mapping[str, Any]) -> str:
+    try:
+        return json.dumps(plan, default=plain)
+    except TypeError as error:
+        raise StudyError(f"the plan: {error}") from None

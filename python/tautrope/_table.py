@@ -105,6 +105,35 @@ class Table:
         return f"<Table: {len(self)} rows, columns {', '.join(self.columns)}>"
 
 
+class StepStream:
+    """The rope after every step, made as it is read, so that all of it never is in memory: see `Ropes.stream_steps`.
+
+    It can be read as often as you like: ``for table in stream`` gives `Table`s of some 250,000 rows, each of whole
+    traces, and whatever takes Arrow streams takes this one: ``pyarrow.RecordBatchReader.from_stream(stream)``, DuckDB
+    by its name in a query.
+    """
+
+    def __init__(self, core: _core.StepStream, again: Any) -> None:
+        self._core = core
+        #: What makes the same of a pickle.
+        self._again = again
+
+    def __iter__(self) -> Iterator[Table]:
+        place = 0
+        while (part := self._core.part(place)) is not None:
+            table, place = part
+            yield Table(table)
+
+    def __arrow_c_stream__(self, requested_schema: Any = None) -> Any:
+        return self._core.__arrow_c_stream__(requested_schema)
+
+    def __reduce__(self) -> Any:
+        return self._again
+
+    def __repr__(self) -> str:
+        return "<StepStream: the rope after every step, made as it is read>"
+
+
 def _restored(data: bytes) -> Table:
     return Table(_core.Table.of_ipc(data))
 

@@ -36,7 +36,7 @@ def test_notebooks_run(notebook: Path, tmp_path: Path) -> None:
     book = nbformat.read(notebook, as_version=4)
     nbformat.validate(book)
     NotebookClient(book, timeout=120, resources={"metadata": {"path": tmp_path}}).execute()
-    assert len(NOTEBOOKS) == 3
+    assert len(NOTEBOOKS) == 4
 
 
 def test_nothing_but_numpy_is_needed() -> None:

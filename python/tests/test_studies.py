@@ -267,14 +267,14 @@ def test_an_interrupted_study_goes_on(tmp_path: Path, answer: Answer) -> None:
 
 
 def test_progress_is_said_on_stderr(capsys: pytest.CaptureFixture[str]) -> None:
-    said = tautrope._study._Said(True)
+    said = tautrope._progress.Said(True)
     with said as say:
         assert say is not None
         said._last -= 1
         say(25, 100)
     shown = capsys.readouterr()
     assert shown.out == "" and shown.err.startswith("\rtautrope: 25 %, ") and shown.err.endswith("\r")
-    with tautrope._study._Said(False) as say:
+    with tautrope._progress.Said(False) as say:
         assert say is None
 
 

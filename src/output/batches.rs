@@ -4,16 +4,22 @@ use std::sync::Arc;
 
 use arrow_array::RecordBatch;
 use arrow_schema::{Schema, SchemaRef};
+use rayon::prelude::*;
 
 use super::columns::{EventColumns, ResultColumns};
 use super::events::row;
 use super::labels::Labels;
+use super::step_arrays::StepArrays;
 use super::tables::Columns;
-use crate::rope::TraceRecord;
-use crate::scene::Scene;
+use crate::rope::{StepColumns, Steps, TraceRecord};
+use crate::scene::{Centre, Model, Scene};
+use crate::trace::SettledTrace;
 
 /// How many rows or list elements a batch has, about: offsets of lists are numbers of 32 bits.
 const BATCH: usize = 1 << 20;
+
+/// How many steps a batch of them has, about: enough that batches cost nothing, and few enough for all threads.
+const STEPS: usize = 1 << 16;
 
 /// Results as tables in memory, one row a trace: the columns, and the rows in batches, none if there are no records.
 /// They are those of [`write_results`](super::write_results) to a Parquet file. O(records and their wraps).
@@ -51,6 +57,46 @@ pub fn event_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec<
     })
 }
 
+/// The rope after every step of traces as tables in memory: the columns, and the rows in batches of whole traces, none
+/// if there are no traces. They are those of a [`StepWriter`](super::StepWriter) of a Parquet file. Turns are counted
+/// about each of `centres`. O(points and events), on all threads.
+///
+/// # Panics
+///
+/// As [`Steps::new`] and [`Steps::next`], if a record is not that of its trace.
+pub fn step_batches(
+    model: &Model,
+    traces: &[SettledTrace],
+    records: &[TraceRecord],
+    centres: &[Centre],
+) -> (SchemaRef, Vec<RecordBatch>) {
+    let mut parts = Vec::new();
+    let (mut first, mut rows) = (0, 0);
+    for (place, trace) in traces.iter().enumerate() {
+        rows += trace.points().len();
+        if rows >= STEPS || place + 1 == traces.len() {
+            parts.push(first..place + 1);
+            (first, rows) = (place + 1, 0);
+        }
+    }
+    let part = |part: std::ops::Range<usize>| {
+        let mut columns = StepColumns::new(centres.len());
+        for (trace, record) in traces[part.clone()].iter().zip(&records[part]) {
+            columns.take(record.trace, &mut Steps::new(model, trace, record, centres), usize::MAX);
+        }
+        whole(StepArrays::of(columns, centres)).1
+    };
+    let (schema, _) = whole(StepArrays::new(centres));
+    (schema, parts.into_par_iter().flat_map_iter(part).collect())
+}
+
+/// Columns that are there, in one batch.
+pub(super) fn whole<C: Columns>(mut columns: C) -> (SchemaRef, Vec<RecordBatch>) {
+    let schema = Arc::new(Schema::new(columns.fields()));
+    let batch = RecordBatch::try_new(schema.clone(), columns.take()).expect("columns fit their fields");
+    (schema, vec![batch])
+}
+
 fn batches<C: Columns, R>(
     mut columns: C,
     rows: impl Iterator<Item = R>,
@@ -81,7 +127,7 @@ mod tests {
     use super::*;
     use crate::engine::{Cpu, Engine, Job};
     use crate::example::{Walker, floor_plan, settled_walks};
-    use crate::output::{write_events, write_results};
+    use crate::output::{StepWriter, write_events, write_results};
     use crate::scene::{Model, Object, Wall};
 
     /// Holds the rows in memory to those of the file that `write` writes.
@@ -110,7 +156,15 @@ mod tests {
             let scene = model.scene();
             compare(result_batches(scene, &records), |file| write_results(file, scene, &records).unwrap());
             compare(event_batches(scene, &records), |file| write_events(file, scene, &records).unwrap());
+            let centres = scene.labelled();
+            compare(step_batches(&model, &walks, &records, &centres), |file| {
+                let mut steps = StepWriter::create(file, &model, &centres).unwrap();
+                steps.write_all(&walks, &records).unwrap();
+                steps.finish().unwrap();
+            });
         }
+        let model = Model::new(floor_plan(), None).unwrap();
+        assert!(step_batches(&model, &[], &[], &[]).1.is_empty());
         let (schema, none) = result_batches(&floor_plan(), &[]);
         assert_eq!((schema.fields().len(), none), (11, Vec::new()));
     }

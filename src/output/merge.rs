@@ -22,18 +22,20 @@ const ROWS: usize = 1 << 13;
 /// Writes the rows of the Parquet files at `from`, each as [`ResultWriter`](super::ResultWriter) writes it and in the
 /// order of its traces, to one such file at `to`, in the order of all traces, all in `scene`; `notes` go into its
 /// metadata. The same rows give the same bytes, however they are shared out. O(rows) in time for few files; in memory a
-/// few thousand rows of those whose traces overlap.
+/// few thousand rows of those whose traces overlap. Where the study ended early, `rows` are the first of those in the
+/// files, and what lies behind them `is_cut`.
 ///
 /// # Errors
 ///
-/// A file that cannot be read or whose columns are others, a trace that is there twice, more or fewer `rows`, and those
-/// of [`check_output`](super::check_output).
+/// A file that cannot be read or whose columns are others, a trace that is there twice, fewer `rows` than are wanted
+/// or, if nothing is cut, more; and those of [`check_output`](super::check_output).
 pub fn merge_results(
     from: &[PathBuf],
     to: &Path,
     scene: &Scene,
     notes: &[(&str, String)],
     rows: u64,
+    is_cut: bool,
 ) -> Result<(), WriteError> {
     let columns = ResultColumns::new(&Labels::of(scene));
     let mut table = Table::new(to, WholeFile::create(to)?, columns)?;
@@ -49,7 +51,7 @@ pub fn merge_results(
     let mut chunks = BatchCoalescer::new(table.schema(), ROWS);
     let failed = |e| WriteError::io(to, std::io::Error::other(e));
     let mut written = 0;
-    loop {
+    while !(is_cut && written == rows) {
         // The source whose next trace is the first, and how far it goes before it is another's turn.
         let first = (0..open.len()).min_by_key(|&i| open[i].next());
         if let Some(&(next, path)) = waiting.last()
@@ -68,6 +70,7 @@ pub fn merge_results(
         }
         let traces = &traces(&source.rows)[source.at..];
         let count = others.map_or(traces.len(), |next| traces.partition_point(|&trace| trace < next));
+        let count = if is_cut { count.min((rows - written) as usize) } else { count };
         chunks.push_batch(source.rows.slice(source.at, count)).map_err(failed)?;
         while let Some(rows) = chunks.next_completed_batch() {
             table.write(&rows)?;
@@ -194,15 +197,30 @@ mod tests {
             (0..3).map(|k| written(&at(&format!("{k}.parquet")), (0..40_000).filter(block(k)))).collect();
         let none = written(&at("none.parquet"), 0..0);
         let all = [&parts[2], &none, &parts[0], &parts[1]].map(Clone::clone);
-        merge_results(&all, &at("merged.parquet"), &nothing(), &[("a", "b".to_owned())], 40_000).unwrap();
-        let short = merge_results(&all, &at("no.parquet"), &nothing(), &[], 40_001).unwrap_err().to_string();
+        merge_results(&all, &at("merged.parquet"), &nothing(), &[("a", "b".to_owned())], 40_000, false).unwrap();
+        let short = merge_results(&all, &at("no.parquet"), &nothing(), &[], 40_001, true).unwrap_err().to_string();
         assert!(short.ends_with("its parts have 40000 rows instead of 40001"), "{short}");
         assert!(rows(&at("merged.parquet")) == rows(&whole));
-        merge_results(std::slice::from_ref(&whole), &at("again.parquet"), &nothing(), &[("a", "b".to_owned())], 40_000)
-            .unwrap();
+        merge_results(
+            std::slice::from_ref(&whole),
+            &at("again.parquet"),
+            &nothing(),
+            &[("a", "b".to_owned())],
+            40_000,
+            false,
+        )
+        .unwrap();
         assert!(std::fs::read(at("merged.parquet")).unwrap() == std::fs::read(at("again.parquet")).unwrap());
-        let twice =
-            merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &nothing(), &[], 0).unwrap_err().to_string();
+        let first = written(&at("first.parquet"), 0..10_001);
+        for (from, to) in [(&all[..], "cut.parquet"), (&[first][..], "cut2.parquet")] {
+            merge_results(from, &at(to), &nothing(), &[], 10_001, true).unwrap();
+        }
+        assert!(std::fs::read(at("cut.parquet")).unwrap() == std::fs::read(at("cut2.parquet")).unwrap());
+        let more = merge_results(&all, &at("no.parquet"), &nothing(), &[], 10_001, false).unwrap_err().to_string();
+        assert!(more.ends_with("its parts have 40000 rows instead of 10001"), "{more}");
+        let twice = merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &nothing(), &[], 0, false)
+            .unwrap_err()
+            .to_string();
         assert!(twice.ends_with("trace 500 is in another file too"), "{twice}");
         assert!(!at("no.parquet").exists());
     }
@@ -212,7 +230,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         let fails = |path: &Path| {
-            merge_results(&[path.to_owned()], &at("no.parquet"), &nothing(), &[], 1).unwrap_err().to_string()
+            merge_results(&[path.to_owned()], &at("no.parquet"), &nothing(), &[], 1, false).unwrap_err().to_string()
         };
         assert!(fails(&at("gone.parquet")).contains("gone.parquet: No such file"));
         std::fs::write(at("text.parquet"), "no table at all").unwrap();
@@ -237,8 +255,9 @@ mod tests {
                 bad[i] ^= change;
                 std::fs::write(&from, bad).unwrap();
                 // One row more than there are: what is taken is not written out.
-                let error =
-                    merge_results(std::slice::from_ref(&from), &to, &nothing(), &[], 10).unwrap_err().to_string();
+                let error = merge_results(std::slice::from_ref(&from), &to, &nothing(), &[], 10, false)
+                    .unwrap_err()
+                    .to_string();
                 errors += usize::from(error.contains("from.parquet"));
             }
         }

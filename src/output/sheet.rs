@@ -4,10 +4,11 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-use arrow_array::{ArrayRef, Float64Array, StringArray, UInt64Array};
-use arrow_schema::{DataType, Field};
+use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray, UInt64Array};
+use arrow_schema::{DataType, Field, SchemaRef};
 
 use super::WriteError;
+use super::batches::whole;
 use super::labels::field;
 use super::rows::Rows;
 use super::tables::Columns;
@@ -131,6 +132,11 @@ impl Sheet {
         rows.write_all(&Vec::from_iter(0..self.rows()), json, csv, |_, _| Ok(()))?;
         rows.complete()?.finish_durably()
     }
+
+    /// The same in memory: the columns, and all rows in one batch. They are those of a Parquet file of it.
+    pub fn batches(&self) -> (SchemaRef, Vec<RecordBatch>) {
+        whole(Held(self.columns.clone()))
+    }
 }
 
 /// Columns that are there, until they are taken.
@@ -177,5 +183,7 @@ mod tests {
         let x = rows.column_by_name("x").unwrap();
         assert!(x.is_null(0) && x.as_primitive::<Float64Type>().value(1) == 0.1);
         assert_eq!(rows.column(0).as_string::<i32>().value(0), "a, b");
+        let (schema, batches) = sheet.batches();
+        assert_eq!((schema.fields(), &batches[..]), (rows.schema().fields(), &[rows.clone()][..]));
     }
 }

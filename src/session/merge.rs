@@ -88,7 +88,9 @@ fn put_together(
         let precision = study.plan().run.precision.name();
         let computed = Computed { engine: "merged", precision, on: "several runs".to_owned() };
         let (file, notes) = (folder.file(TRACES), provenance(study, &computed));
-        merge_results(rows, &file, study.models()[0].scene(), &notes, state.traces())?;
+        // Parts may have done blocks behind the one with which the study is certain enough.
+        let is_cut = state.stopped() == Stopped::RelativeError;
+        merge_results(rows, &file, study.models()[0].scene(), &notes, state.traces(), is_cut)?;
         let check = check(&file).map_err(|cause| WriteError::Io { path: file, cause })?;
         state.kept.files.insert(TRACES.to_owned(), check);
     }

@@ -105,7 +105,7 @@ impl Rows {
     pub(super) fn finish(self, folder: &Folder, parts: &[Part], traces: u64) -> Result<Check, SessionError> {
         let (parts, whole): (Vec<PathBuf>, _) =
             (parts.iter().map(|part| path(&self.folder, part.places.start)).collect(), folder.file(TRACES));
-        merge_results(&parts, &whole, &self.scene, &self.notes, traces)?;
+        merge_results(&parts, &whole, &self.scene, &self.notes, traces, false)?;
         check(&whole).map_err(|cause| unread(&whole, cause))
     }
 }

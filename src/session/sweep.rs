@@ -99,13 +99,26 @@ impl SweepFolder {
     ///
     /// A study that is damaged, or whose files are not there any more. One that has not begun is none.
     pub fn answer(&self, base: Option<&Path>) -> Result<SweepAnswer, SessionError> {
+        self.answer_against(self.record.against, base)
+    }
+
+    /// The same with all points compared with the one of number `against`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`answer`](Self::answer).
+    ///
+    /// # Panics
+    ///
+    /// If there is no such point.
+    pub fn answer_against(&self, against: usize, base: Option<&Path>) -> Result<SweepAnswer, SessionError> {
         let look = |path: &Path| match path.join(STATE).exists() {
             true => look(path, base).map(Some),
             false => Ok(None),
         };
-        let against = look(&self.path.join(&self.record.points[self.record.against].folder))?;
+        let other = look(&self.path.join(&self.record.points[against].folder))?;
         let reference =
-            against.filter(|(_, state)| state.traces() > 0).map(|(study, state)| Reference::new(&study, &state));
+            other.filter(|(_, state)| state.traces() > 0).map(|(study, state)| Reference::new(&study, &state));
         let points = self.points().map(|(path, point)| {
             let (folder, values) = (point.folder.clone(), point.values.clone());
             Ok(match look(&path)? {
@@ -115,7 +128,7 @@ impl SweepFolder {
         });
         Ok(SweepAnswer {
             keys: self.record.keys.clone(),
-            against: self.record.against,
+            against,
             shard: (self.record.shard != Shard::WHOLE).then(|| self.record.shard.to_string()),
             points: points.collect::<Result<_, SessionError>>()?,
         })

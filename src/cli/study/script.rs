@@ -75,7 +75,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let rule = match (args.scheduler, has_rule) {
         (Scheduler::Slurm, true) => include_str!("script/slurm-rule.sh"),
-        (Scheduler::Dask, true) => include_str!("script/dask-rule.py"),
         _ => "",
     };
     let quote = |path: &Path| quoted(args.scheduler, path);

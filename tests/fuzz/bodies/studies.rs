@@ -92,8 +92,9 @@ pub(super) fn merge(input: &[u8], folder: &Path) {
     let [from, to, again] = ["from", "to", "again"].map(|name| folder.join(name).with_extension("parquet"));
     fs::write(&from, bytes).expect("the folder can be written to");
     let no_walls = Scene::new([]).expect("it has no walls");
-    let merge =
-        |from: &PathBuf, to: &PathBuf| merge_results(std::slice::from_ref(from), to, &no_walls, &[], rows.into());
+    let merge = |from: &PathBuf, to: &PathBuf| {
+        merge_results(std::slice::from_ref(from), to, &no_walls, &[], rows.into(), false)
+    };
     match merge(&from, &to) {
         Ok(()) => {
             merge(&to, &again).unwrap_or_else(|e| panic!("{e}"));
