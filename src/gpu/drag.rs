@@ -89,10 +89,9 @@ impl DragPass {
     pub fn most(device: &Device, budget: usize, lanes: usize) -> Room {
         let limits = device.device.limits();
         let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(budget as u64) as usize;
-        let all = bytes / size_of::<[u32; 2]>();
-        let stack_bytes = STACK * size_of::<Stacked>();
-        let lanes = lanes.min(limits.max_storage_buffer_binding_size as usize / stack_bytes);
-        Room { lanes, points: (all / 8 * 3 / CHUNK).max(1) * CHUNK, rays: (all / 4).max(1) }
+        let all = bytes / POINT;
+        let stacks = limits.max_storage_buffer_binding_size as usize / (STACK * size_of::<Stacked>());
+        Room { lanes: lanes.min(stacks), points: (all / 8 * 3 / CHUNK).max(1) * CHUNK, rays: (all / 4).max(1) }
     }
 
     /// A pass of the kernel with source `wgsl` about pivots at these `places`, the anchor last.
@@ -167,7 +166,6 @@ impl DragPass {
     }
 
     /// Whether the fan of a pivot, by its index, lies on the device.
-    #[inline]
     pub fn has_fan(&self, pivot: usize) -> bool {
         self.heads[pivot].rays > 0
     }
@@ -277,8 +275,8 @@ impl DragPass {
         if lanes.is_empty() {
             return;
         }
-        let anchor = self.heads.len() as u32 - 1;
-        let with = Job { lanes: lanes.len() as u32, turns: LOOKS / looks, looks, anchor };
+        let (count, anchor) = (lanes.len() as u32, self.heads.len() as u32 - 1);
+        let with = Job { lanes: count, turns: LOOKS / looks.max(1), looks, anchor };
         queue.write_buffer(job, 0, bytemuck::bytes_of(&with));
         queue.write_buffer(buffer, 0, bytemuck::cast_slice(lanes));
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("drag") });
@@ -292,7 +290,7 @@ impl DragPass {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &*bindings, &[]);
-            pass.dispatch_workgroups(with.lanes.div_ceil(self.workgroup), 1, 1);
+            pass.dispatch_workgroups(count.div_ceil(self.workgroup), 1, 1);
         }
         let bytes = [size_of_val(lanes) as u64, (lanes.len() * NOTES * size_of::<Note>()) as u64];
         encoder.copy_buffer_to_buffer(buffer, 0, lanes_back, 0, bytes[0]);

@@ -84,9 +84,9 @@ pub fn step_batches(
         for (trace, record) in traces[part.clone()].iter().zip(&records[part]) {
             columns.take(record.trace, &mut Steps::new(model, trace, record, centres), usize::MAX);
         }
-        whole(StepArrays::of(columns, centres)).1
+        whole(StepArrays::of(columns, centres, false)).1
     };
-    let (schema, _) = whole(StepArrays::new(centres));
+    let (schema, _) = whole(StepArrays::new(centres, false));
     (schema, parts.into_par_iter().flat_map_iter(part).collect())
 }
 
