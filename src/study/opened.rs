@@ -209,10 +209,14 @@ impl Study {
             steps += trace.steps();
         }
         let start = *self.drawn(0).ends().last().expect("a trace has points");
+        let tethered = self.plan.walk.tether().map_or(String::new(), |tether| {
+            format!(", or make the rope longer than the tether of {}", number(tether.length))
+        });
+        let longer = if tethered.is_empty() { "" } else { ", a longer tether" };
         Err(PlanError::new(format!(
             "walk: all walks stand still: none of the {steps} steps of the first {few} traces leads anywhere, that of \
-             trace 0 from {}, since each would meet a wall or the border of the scene; give a step shorter than {}, or \
-             another anchor",
+             trace 0 from {}, since each would meet a wall or the border of the scene{tethered}; give a step shorter than \
+             {}{longer}, or another anchor",
             Shown(start),
             number(step)
         )))

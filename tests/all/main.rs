@@ -33,6 +33,7 @@ mod study_truth;
 mod support;
 mod sweep_picture;
 mod sweep_truth;
+mod tether_truth;
 mod touch;
 mod trace_files;
 mod visibility;
