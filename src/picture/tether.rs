@@ -8,8 +8,8 @@ use super::unit::unit;
 use crate::scene::Scene;
 use crate::study::{Estimate, Held, Summary};
 
-/// The answer in one sentence. Of walks that a tether holds back, `a tether of 12 m holds the walks back in 63 % (62–64)
-/// of their steps`; else `99 % of the walks need at most 367 mm (360 to 372)`: the highest of the quantiles of
+/// The answer in one sentence. Of walks that a tether holds back that is `a tether of 12 m holds the walks back in 63 %
+/// (62–64) of their steps`, else `99 % of the walks need at most 367 mm (360 to 372)`: the highest of the quantiles of
 /// the greatest rope length with its interval, in the scene's unit, if that has a name. `None` if there are no traces.
 pub fn sentence(summary: &Summary, scene: &Scene) -> Option<String> {
     let need = summary.need()?;

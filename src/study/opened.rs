@@ -209,14 +209,14 @@ impl Study {
             steps += trace.steps();
         }
         let start = *self.drawn(0).ends().last().expect("a trace has points");
-        let tethered = self.plan.walk.tether().map_or(String::new(), |tether| {
-            format!(", or make the rope longer than the tether of {}", number(tether.length))
-        });
-        let longer = if tethered.is_empty() { "" } else { ", a longer tether" };
+        let (tethered, longer) = match self.plan.walk.tether() {
+            Some(tether) => (format!(" or strain the tether of {}", number(tether.length)), ", a longer tether"),
+            None => Default::default(),
+        };
         Err(PlanError::new(format!(
             "walk: all walks stand still: none of the {steps} steps of the first {few} traces leads anywhere, that of \
-             trace 0 from {}, since each would meet a wall or the border of the scene{tethered}; give a step shorter than \
-             {}{longer}, or another anchor",
+             trace 0 from {}, since each would meet a wall or the border of the scene{tethered}; give a step shorter \
+             than {}{longer}, or another anchor",
             Shown(start),
             number(step)
         )))

@@ -17,6 +17,7 @@ mod formats;
 mod gallery;
 mod house;
 mod live;
+mod naive_rope;
 mod pictures;
 mod pushed;
 mod random;

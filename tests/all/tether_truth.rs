@@ -220,7 +220,8 @@ fn walks_are_held_back_first_when_ropes_without_a_tether_become_longer() {
                 // The quantiles are where the curve comes down to them.
                 for quantile in &tether.quantiles {
                     let step = quantile.value.value as u64;
-                    let at = |step: u64| tether.curve.iter().filter(|p| p.step <= step).map(|p| p.share.value).last();
+                    let at =
+                        |step: u64| tether.curve.iter().filter(|p| p.step <= step).map(|p| p.share.value).next_back();
                     assert!(at(step - 1).unwrap() > 1.0 - quantile.share - 1e-12, "{quantile:?}");
                     let behind = tether.curve.iter().find(|p| p.step >= step).unwrap();
                     assert!(behind.share.value <= 1.0 - quantile.share + 1e-12, "{quantile:?}");

@@ -204,13 +204,14 @@ pub struct Map {
     pub cells: Vec<Cell>,
 }
 
-/// How much of the plane free ends were seen in, in the square of the scene's unit. That grows with the walks, and is no
-/// estimate of what they could come to: it has no interval.
+/// How much of the plane free ends were seen in, in the square of the scene's unit. That grows with the walks, and is
+/// no estimate of what they could come to: it has no interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Visited {
     /// The area of the cells in which a free end was seen: of too much, by as much as cells lie across the border.
     pub area: f64,
-    /// That of those whose neighbours, the eight around it as far as there are so many, were all seen too: of too little.
+    /// That of those whose neighbours, the eight around it as far as there are so many, were all seen too: of too
+    /// little.
     pub inner: f64,
 }
 

@@ -124,7 +124,7 @@ pub struct TetherAnswer {
     /// Quantiles of the number of that step over all walks, those that were never held back counting as later than all
     /// others. Those that lie among these are left out; an end of an interval that does is `None`.
     pub quantiles: Vec<Quantile>,
-    /// At how many steps the curve is given, and what it is there: the share of walks that were not held back up to that
-    /// step.
+    /// At how many steps the curve is given, and what it is there: the share of walks that were not held back up to
+    /// that step.
     pub curve: Vec<SurvivalPoint>,
 }

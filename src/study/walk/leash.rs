@@ -75,9 +75,8 @@ impl<'a> Leash<'a> {
     }
 
     /// Slides along the border of what the tether lets the free end reach, as far as the refused step to `to` leads: to
-    /// where the rope there is as long as the tether. That is the nearest place within reach, measured along ropes: what
-    /// a tether lets a free end reach is a ball among ropes, and those are nowhere closer than in a plane. Stays if the
-    /// straight way is not open or the rope is another one there.
+    /// where the rope there is as long as the tether. Measured along ropes, that is the nearest place within reach. Stays
+    /// if the straight way is not open, or the rope that it makes is too long.
     pub(super) fn slide(&mut self, room: &Room, to: DVec2) {
         let (mut from, mut length) = (room.model.anchor(), 0.0);
         let turns: Vec<DVec2> = self.refused.taut(to).iter().map(|turn| turn.at).collect();

@@ -279,6 +279,7 @@ fn the_page_has_the_constants_of_the_code() {
         ("looks for a mirror", at_walls::MIRRORS.to_string()),
         ("goals drawn in vain", waypoints::TRIES.to_string()),
         ("points drawn in vain", free_space::TRIES.to_string()),
+        ("slides drawn in", leash::DRAWN_IN.to_string()),
     ];
     let start = page.find("| constant | value |").expect("a table of constants");
     let rows: Vec<&str> = page[start..].lines().skip(2).take_while(|line| line.starts_with('|')).collect();
@@ -291,6 +292,7 @@ fn the_page_has_the_constants_of_the_code() {
         format!("Up to {} times", at_walls::MIRRORS),
         format!("{} angles at once", persistent::AHEAD),
         format!("{} blocks at once", random::BLOCKS),
+        format!("after {} times the free end stays", leash::DRAWN_IN),
     ] {
         let found = page.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(found.contains(&phrase), "{phrase}");
