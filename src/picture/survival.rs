@@ -14,7 +14,7 @@ const LINE: f64 = 15.0;
 /// The share of ropes that were never longer than each limit, against the step; `None` if the study has no limits.
 pub fn survival(summary: &Summary, scene: &Scene) -> Option<String> {
     let title = "Share of ropes never longer than each limit, step by step";
-    draw(summary.survival.iter().collect(), scene, title, ("share of ropes never longer than the limit", "limit"))
+    draw(summary.survival.iter().collect(), scene, title, ["share of ropes never longer than the limit", "limit", "≤ "])
 }
 
 /// The share of walks that their tether has not held back yet, against the step; `None` without one.
@@ -22,11 +22,11 @@ pub fn held_back(summary: &Summary, scene: &Scene) -> Option<String> {
     let tether = summary.tether.as_ref()?;
     let curve = Survival { limit: tether.length, curve: tether.curve.clone() };
     let title = "Share of walks that the tether has not held back yet, step by step";
-    draw(vec![&curve], scene, title, ("share of walks not held back yet", "tether"))
+    draw(vec![&curve], scene, title, ["share of walks not held back yet", "tether", ""])
 }
 
-/// Curves, each named by its limit.
-fn draw(curves: Vec<&Survival>, scene: &Scene, title: &str, (share, name): (&str, &str)) -> Option<String> {
+/// Curves of a share, each named by its limit: what that is, and the sign before it.
+fn draw(curves: Vec<&Survival>, scene: &Scene, title: &str, [share, name, sign]: [&str; 3]) -> Option<String> {
     let mut curves: Vec<&Survival> = curves.into_iter().filter(|s| !s.curve.is_empty()).collect();
     curves.sort_by(|a, b| b.limit.total_cmp(&a.limit));
     let steps = || curves.iter().flat_map(|s| &s.curve).map(|p| p.step as f64);
@@ -80,7 +80,7 @@ fn draw(curves: Vec<&Survival>, scene: &Scene, title: &str, (share, name): (&str
             &[at, [right + 4.0, at[1]], [right + 14.0, place], [right + 18.0, place]],
             &format!("stroke=\"{}\"", shade(i)),
         );
-        svg.text([right + 22.0, place + 4.0], Align::Start, "", &format!("≤ {}", number(curves[i].limit, None)));
+        svg.text([right + 22.0, place + 4.0], Align::Start, "", &format!("{sign}{}", number(curves[i].limit, None)));
     }
     svg.text([right + 22.0, 24.0], Align::Start, &format!("fill=\"{MUTED}\""), name);
     svg.text(

@@ -263,7 +263,7 @@ fn a_study_with_a_tether_begins_with_it() {
     let (stem, title, svg) = &all[0];
     assert_eq!((stem.as_str(), all.len()), ("held-back", 8));
     let words = texts(svg);
-    assert!(words.iter().any(|text| text == "≤ 2.5") && title.contains("not held back yet"), "{words:?}");
+    assert!(words.iter().any(|text| text == "2.5") && title.contains("not held back yet"), "{words:?}");
     // It is the survival curve of one limit, in other words.
     summary.survival = vec![Survival { limit: 2.5, curve }];
     let line = |svg: &str| svg.lines().filter(|line| line.contains("<polygon")).map(str::to_owned).collect::<Vec<_>>();

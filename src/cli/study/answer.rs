@@ -229,11 +229,10 @@ fn tether(summary: &Summary, scene: &Scene) -> String {
 fn first_held_back(tether: &TetherAnswer) -> String {
     let mut text = String::new();
     for quantile in &tether.quantiles {
-        let (share, step) = (short_share(quantile.share), short(quantile.value.value));
-        text +=
-            &format!("{:>8} of them first by step {step:>8}  ({})\n", format!("{share} %"), interval(&quantile.value));
+        let (share, step) = (format!("{} %", short_share(quantile.share)), short(quantile.value.value));
+        text += &format!("{share:>8} of them are held back by step {step:>8}  ({})\n", interval(&quantile.value));
     }
-    text += &format!("{:>8} of them never  {}\n\n", percent(tether.never.value), shares(&tether.never));
+    text += &format!("{:>8} of them never are  {}\n\n", percent(tether.never.value), shares(&tether.never));
     text
 }
 

@@ -143,10 +143,13 @@ fn what_a_tether_does_is_told() {
     assert!(told.starts_with("a tether of 5.5 holds the walks back in "), "{told}");
     assert!(told.contains(&format!(", {share:.2} % were held back by the tether\n")), "{share} {told}");
     let never = 100.0 * number(&tether["never"]["value"]);
-    assert!(told.contains(&format!("{never:.2} % of them never  (")), "{told}");
+    assert!(told.contains(&format!("{never:.2} % of them never are  (")), "{told}");
     let median = tether["quantiles"].as_array().unwrap().iter().find(|q| number(&q["share"]) == 0.5).unwrap();
     let step = format!("{:.2}", number(&median["value"]["value"]));
-    assert!(told.lines().any(|line| line.contains("50 % of them first by step") && line.contains(&step)), "{told}");
+    assert!(
+        told.lines().any(|line| line.contains("50 % of them are held back by step") && line.contains(&step)),
+        "{told}"
+    );
     let page = folder.text("a/report.html");
     assert!(page.contains("<dt>steps held back by the tether</dt>") && page.contains("<dt>walks never held back</dt>"));
     assert!(page.contains("How many walks the tether has not held back yet, step by step"));
@@ -176,4 +179,32 @@ fn tethers_that_make_no_sense_are_refused() {
     folder.done("study run s.toml --out a");
     let summary = json(&folder.text("a/summary.json"));
     assert!(number(&summary["scalars"][1]["min"]) > 0.1 * (1.0 - 1e-14) && number(&summary["still"]) < 0.1);
+}
+
+/// What stands in docs/examples/vacuum.md is what the program says, and its picture what it draws.
+#[test]
+fn the_vacuum_robot_does_as_its_page_says() {
+    let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/examples");
+    let page = fs::read_to_string(format!("{docs}/vacuum.md")).unwrap();
+    let folder = Folder::new();
+    let mut told = String::new();
+    let commands = page.lines().filter_map(|line| line.strip_prefix("    tautline "));
+    for (i, command) in commands.enumerate() {
+        let command = command.replace("docs/examples/", &format!("{docs}/")).replace(" --out cables", "");
+        told += &folder.done(&format!("{command} --out {i} --engine cpu")).stdout;
+    }
+    let told: Vec<&str> = told.lines().map(str::trim_end).collect();
+    let quoted =
+        page.lines().filter_map(|line| line.strip_prefix("    ")).filter(|line| !line.starts_with("tautline "));
+    let missing: Vec<&str> = quoted.clone().filter(|line| !told.contains(line)).collect();
+    assert!(quoted.count() > 10 && missing.is_empty(), "{missing:#?} are not among {told:#?}");
+    let visited = json(&folder.text("0/summary.json"))["map"]["visited"].clone();
+    let [inner, area] = ["inner", "area"].map(|name| number(&visited[name]));
+    let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains(&format!("Between {inner:.2} and {area:.2} square metres were visited")), "{visited}");
+    assert!(
+        folder.text("0/length-map.svg") == fs::read_to_string(format!("{docs}/vacuum.svg")).unwrap(),
+        "another picture; `tautline study run docs/examples/vacuum.toml --out DIR` makes DIR/length-map.svg, which is \
+         docs/examples/vacuum.svg"
+    );
 }
