@@ -87,6 +87,24 @@ fn a_walk_that_stays_is_uniform_over_the_disc() {
     assert!(visited.area - visited.inner < 0.5 * disc, "{visited:?}");
 }
 
+/// How often a circle of steps lies out of the disc is what the share of steps held back is about.
+#[test]
+fn intervals_hold_the_share_held_back_as_often_as_they_say() {
+    let truth = over_disc(|r| 1.0 - share_inside(r));
+    let studies = 300;
+    let held = (0..studies).filter(|seed| {
+        let plan = format!(
+            "[walk]\nkind = \"uniform\"\nstep = {STEP}\nsteps = 40\nstart = \"visible\"\ntether = {LENGTH}\n\
+             [run]\ntraces = 40\nblock = 40\nseed = {seed}\n[tallies]\nconfidence = 0.9\nmap = 0\n"
+        );
+        let share = answer(&format!("{SQUARE}POINT (0 0)\n"), &plan).2.tether.unwrap().held_back;
+        share.low.unwrap() <= truth && truth <= share.high.unwrap()
+    });
+    // Four standard deviations of such a count.
+    let held = held.count() as f64;
+    assert!((held - 270.0).abs() < 4.0 * 27f64.sqrt(), "{held} of {studies}");
+}
+
 /// A walk that draws again goes from p to q as often as from q to p where p has as much more time as it has fewer
 /// places to go.
 #[test]

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::engine::{Cpu, Engine, Job, Reference};
 use crate::rope::TraceRecord;
-use crate::scene::{Model, Scene};
+use crate::scene::{Inside, Model, Object, Scene, Wall};
 use crate::study::walk::tests::{STARTS, own_points, scenes, square};
 use crate::study::{AtTether, AtWalls, GaussianWalk, PersistentWalk, Start, UniformWalk, WalkPlan, Walks};
 use crate::trace::{SettledTrace, Trace, settle};
@@ -37,9 +37,22 @@ fn far() -> (Arc<Model>, f64) {
     (Arc::new(Model::new(scene, Some(DVec2::splat(1e13) + DVec2::new(18.0, 12.0))).unwrap()), 2.0)
 }
 
+/// The anchor stands on the border of a solid, in the middle of a side.
+fn on_a_solid() -> (Arc<Model>, f64) {
+    let ring = |corners: [[f64; 2]; 4], object| {
+        let walls = (0..4).map(move |i| [corners[i], corners[(i + 1) % 4]].map(DVec2::from));
+        walls.map(move |ends| Wall { ends, object, reversed: false })
+    };
+    let solid = Object { inside: Inside::EvenOdd, ..Object::default() };
+    let walls = ring([[3.0, 3.0], [5.0, 3.0], [5.0, 4.0], [3.0, 4.0]], 0)
+        .chain(ring([[0.0, 0.0], [9.0, 0.0], [9.0, 7.0], [0.0, 7.0]], 1));
+    let scene = Scene::of(vec![solid, Object::default()], walls).unwrap();
+    (Arc::new(Model::new(scene, Some(DVec2::new(4.0, 4.0))).unwrap()), 0.5)
+}
+
 #[test]
 fn no_rope_is_longer_than_the_tether() {
-    for (model, step) in scenes().into_iter().chain([far()]) {
+    for (model, step) in scenes().into_iter().chain([far(), on_a_solid()]) {
         let (low, high) = model.bounds();
         let mut held_back = [0; 3];
         for (k, at) in ALL.into_iter().enumerate() {
