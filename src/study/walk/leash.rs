@@ -75,26 +75,33 @@ impl<'a> Leash<'a> {
     }
 
     /// Slides along the border of what the tether lets the free end reach, as far as the refused step to `to` leads: to
-    /// where the rope there is as long as the tether. Measured along ropes, that is the nearest place within reach. Stays
-    /// if the straight way is not open, or the rope that it makes is too long.
+    /// where the rope there is as long as the tether. Measured along ropes, that is the nearest place within reach.
+    /// Stays if the straight way is not open, or the rope that it makes is too long.
     pub(super) fn slide(&mut self, room: &Room, to: DVec2) {
-        let (mut from, mut length) = (room.model.anchor(), 0.0);
-        let turns: Vec<DVec2> = self.refused.taut(to).iter().map(|turn| turn.at).collect();
-        for next in turns.into_iter().chain([to]) {
-            let leg = from.distance(next);
-            if length + leg > self.most {
-                let left = self.most - length;
-                let grain = f64::EPSILON * from.abs().max_element().max(next.abs().max_element()).max(self.most);
-                for less in 0..=DRAWN_IN {
-                    let less = if less == 0 { 0.0 } else { grain * f64::from(1 << (less - 1)) };
-                    let end = point(from + (next - from) * ((left - less).max(0.0) / leg));
-                    if !room.is_open(self.here, end) || self.goes(end) {
-                        return;
-                    }
-                }
+        let ([from, next], left) = self.leg_beyond(to);
+        let whole = from.distance(next);
+        let grain = f64::EPSILON * from.abs().max_element().max(next.abs().max_element()).max(self.most);
+        // The place is rounded, and so is the length: the free end is drawn in by a little, then by more and more.
+        for times in 0..=DRAWN_IN {
+            let less = if times == 0 { 0.0 } else { grain * f64::from(1 << (times - 1)) };
+            let end = point(from + (next - from) * ((left - less).max(0.0) / whole));
+            if !room.is_open(self.here, end) || self.goes(end) {
                 return;
             }
-            (from, length) = (next, length + leg);
         }
+    }
+
+    /// The leg on which the rope refused last, which goes to `to`, becomes longer than the tether, and how much of it
+    /// the tether leaves.
+    fn leg_beyond(&self, to: DVec2) -> ([DVec2; 2], f64) {
+        let (mut from, mut length) = (self.lists.model().anchor(), 0.0);
+        for turn in self.refused.taut(to) {
+            let next = length + from.distance(turn.at);
+            if next > self.most {
+                return ([from, turn.at], self.most - length);
+            }
+            (from, length) = (turn.at, next);
+        }
+        ([from, to], self.most - length)
     }
 }

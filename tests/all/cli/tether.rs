@@ -45,9 +45,12 @@ fn nothing_but_the_study_decides_what_it_says() {
         }
         folder.done("study merge k2 k0 k1 --out whole");
         is_true("whole");
-        // In runs that have a little more time each.
-        let stopped = |i: u32| folder.run(&format!("study run s.toml --out stopped --resume --stop-after 0.{i}s")).code;
-        assert!((1..=9).any(|i| stopped(i) == Some(0)));
+        // Stopped in between or before anything was done, as the machine has it.
+        for seconds in ["0.1", "0.2", "0.4"] {
+            let stopped = folder.run(&format!("study run s.toml --out stopped --resume --stop-after {seconds}s"));
+            assert!(matches!(stopped.code, Some(0 | 4)), "{}", stopped.stderr);
+        }
+        folder.done("study run s.toml --out stopped --resume");
         is_true("stopped");
         // With more traces, after it was done.
         folder.done("study run s.toml --out more --count 90");
