@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
+use super::follow::{follow, leaves};
 use crate::candidates::Lists;
 use crate::geometry::{CoordinateFault, Shown, TracePoint, check_point};
-use crate::rope::{EventKind, Leg, Rope, Side, Sweep};
+use crate::rope::{EventKind, Leg, Rope, Side};
 use crate::scene::Model;
-use crate::trace::{Trace, settle};
 
 /// A rope that follows its free end, one straight move at a time.
 ///
@@ -35,7 +35,7 @@ use crate::trace::{Trace, settle};
 pub struct LiveRope {
     lists: Lists,
     rope: Rope,
-    at: TracePoint,
+    at: DVec2,
     /// Of the last move.
     events: Vec<LiveEvent>,
 }
@@ -87,7 +87,7 @@ impl LiveRope {
         // Made now rather than in the first move.
         let _ = lists.keeps_all();
         let anchor = lists.model().anchor();
-        LiveRope { lists, rope: Rope::new(anchor), at: TracePoint::from(anchor), events: Vec::new() }
+        LiveRope { lists, rope: Rope::new(anchor), at: anchor, events: Vec::new() }
     }
 
     /// Moves the free end straight to `to` and returns what happened to the rope, in order. O(vertices that the pivot
@@ -99,7 +99,7 @@ impl LiveRope {
     /// [`AdvanceError`]: a move that touches a wall, and a coordinate that is not finite, too large or too small.
     /// Nothing has happened then.
     pub fn advance(&mut self, to: DVec2) -> Result<&[LiveEvent], AdvanceError> {
-        let (model, from) = (self.lists.model(), self.at.at);
+        let (model, from) = (self.lists.model(), self.at);
         check_point(to).map_err(|fault| AdvanceError::Coordinate { to, fault })?;
         self.events.clear();
         if to == from {
@@ -109,37 +109,16 @@ impl LiveRope {
             let wall = wall as usize;
             return Err(AdvanceError::Touches { wall, ends: model.scene().ends(wall), from, to });
         }
-        if model.is_on_wall(from) {
-            // The free end leaves a wall, on which the anchor is: a hair tells on which side.
-            self.at = settle(model, &Trace { id: 0, points: vec![from, to] }).point(0);
-        }
-        let leg = Leg { a0: self.at, a1: TracePoint::from(to) };
-        let mut sweep = Sweep::Start;
-        while let Some((kind, vertex, side)) = self.next(&mut sweep, &leg) {
-            self.events.push(LiveEvent { kind, vertex, side });
-        }
-        self.at = leg.a1;
+        let leg = Leg { a0: leaves(model, from, to), a1: TracePoint::from(to) };
+        let events = &mut self.events;
+        follow(&self.lists, &mut self.rope, &leg, |kind, vertex, side| events.push(LiveEvent { kind, vertex, side }));
+        self.at = to;
         Ok(&self.events)
-    }
-
-    /// The next event of a leg.
-    fn next(&mut self, sweep: &mut Sweep, leg: &Leg) -> Option<(EventKind, u32, Side)> {
-        let vertices = self.lists.model().vertices();
-        let o = self.rope.pivot();
-        let pivot = self.lists.model().pivot(self.rope.contacts().last().map(|c| c.vertex));
-        let squared = o.distance_squared(leg.a0.at).max(o.distance_squared(leg.a1.at));
-        match self.lists.of(pivot, squared) {
-            Some(list) => {
-                let near = list.numbers().take(list.within(squared));
-                sweep.next(&mut self.rope, leg, vertices, near)
-            }
-            None => sweep.next(&mut self.rope, leg, vertices, 0..vertices.len() as u32),
-        }
     }
 
     /// Where the free end is.
     pub fn free_end(&self) -> DVec2 {
-        self.at.at
+        self.at
     }
 
     /// The rope, contacts passed straight included.

@@ -46,15 +46,19 @@ pub use page::page;
 pub use picture_error::PictureError;
 pub use raster::png;
 pub use ropes::ropes;
-pub use survival::survival;
+pub use survival::{held_back, survival};
 pub use sweep::sweep;
 pub use tether::{sentence, tether};
 pub use tradeoff::tradeoff;
 
 /// All pictures that there are of a study: for each the name of its file without an extension, its title, and the SVG.
 pub fn all(summary: &Summary, scene: &Scene) -> Vec<(String, String, String)> {
-    let first = tether(summary, scene).map(|svg| ("tether".into(), "How many walks a tether holds".into(), svg));
-    let mut all: Vec<(String, String, String)> = first.into_iter().collect();
+    let first = [
+        ("held-back", "How many walks the tether has not held back yet, step by step", held_back(summary, scene)),
+        ("tether", "How many walks a tether holds", tether(summary, scene)),
+    ];
+    let of = |(stem, title, svg): (&str, &str, Option<String>)| Some((stem.to_owned(), title.to_owned(), svg?));
+    let mut all: Vec<(String, String, String)> = first.into_iter().filter_map(of).collect();
     for h in &summary.histograms {
         let title = match h.name.as_str() {
             "length" => "How long the ropes are at the end".to_string(),
@@ -69,7 +73,6 @@ pub fn all(summary: &Summary, scene: &Scene) -> Vec<(String, String, String)> {
         ("length-map", "How long the rope is, by where its free end is", length_map(summary, scene)),
         ("ropes", "The commonest ropes at the end", ropes(summary, scene)),
     ];
-    let others = others.into_iter().filter_map(|(stem, title, svg)| Some((stem.into(), title.into(), svg?)));
-    all.extend(others);
+    all.extend(others.into_iter().filter_map(of));
     all
 }

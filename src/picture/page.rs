@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::label::{count, number};
+use super::label::{count, estimate, number, percent};
 use super::svg::escape;
 use super::tables;
 use super::tether::sentence;
@@ -90,8 +90,22 @@ fn facts(summary: &Summary) -> String {
             ("crossing a simplified wall", format!("{} traces", count(traded.crossing_traces))),
         ]
     });
+    let tether = summary.tether.iter().flat_map(|tether| {
+        let first = tether.first.map_or("–".to_owned(), |first| estimate(&first));
+        [
+            ("steps held back by the tether", percent(&tether.held_back)),
+            ("walks never held back", percent(&tether.never)),
+            ("first step held back, on average where one was", first),
+        ]
+    });
+    let visited = summary.map.as_ref().and_then(|map| map.visited).map(|visited| {
+        (
+            "area visited, in whole cells",
+            format!("{}; inner cells {}", number(visited.area, None), number(visited.inner, None)),
+        )
+    });
     let mut out = String::from("<dl>\n");
-    for (name, value) in facts.into_iter().chain(traded) {
+    for (name, value) in facts.into_iter().chain(tether).chain(visited).chain(traded) {
         let _ = writeln!(out, "<div><dt>{name}</dt><dd>{}</dd></div>", escape(&value));
     }
     out.push_str("</dl>\n");

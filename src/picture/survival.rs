@@ -13,13 +13,27 @@ const LINE: f64 = 15.0;
 
 /// The share of ropes that were never longer than each limit, against the step; `None` if the study has no limits.
 pub fn survival(summary: &Summary, scene: &Scene) -> Option<String> {
-    let mut curves: Vec<&Survival> = summary.survival.iter().filter(|s| !s.curve.is_empty()).collect();
+    let title = "Share of ropes never longer than each limit, step by step";
+    draw(summary.survival.iter().collect(), scene, title, ["share of ropes never longer than the limit", "limit", "≤ "])
+}
+
+/// The share of walks that their tether has not held back yet, against the step; `None` without one.
+pub fn held_back(summary: &Summary, scene: &Scene) -> Option<String> {
+    let tether = summary.tether.as_ref()?;
+    let curve = Survival { limit: tether.length, curve: tether.curve.clone() };
+    let title = "Share of walks that the tether has not held back yet, step by step";
+    draw(vec![&curve], scene, title, ["share of walks not held back yet", "tether", ""])
+}
+
+/// Curves of a share, each named by its limit: what that is, and the sign before it.
+fn draw(curves: Vec<&Survival>, scene: &Scene, title: &str, [share, name, sign]: [&str; 3]) -> Option<String> {
+    let mut curves: Vec<&Survival> = curves.into_iter().filter(|s| !s.curve.is_empty()).collect();
     curves.sort_by(|a, b| b.limit.total_cmp(&a.limit));
     let steps = || curves.iter().flat_map(|s| &s.curve).map(|p| p.step as f64);
     let (first, last) = (steps().reduce(f64::min)?, steps().reduce(f64::max)?);
 
     let height = 400.0;
-    let mut svg = Svg::new(WIDTH, height, "Share of ropes never longer than each limit, step by step");
+    let mut svg = Svg::new(WIDTH, height, title);
     let low = if first < 0.4 * last { 0.0 } else { first };
     let chart = Chart::new((low, last), (0.0, 100.0), WIDTH - 120.0, 46.0, height - 54.0);
     chart.grid(&mut svg);
@@ -51,7 +65,7 @@ pub fn survival(summary: &Summary, scene: &Scene) -> Option<String> {
             svg.circle(only, 3.5, &format!("fill=\"{}\"", shade(i)));
         }
     }
-    chart.axes(&mut svg, ("step", ""), ("share of ropes never longer than the limit", "%"));
+    chart.axes(&mut svg, ("step", ""), (share, "%"));
 
     // Each curve is named at its right end; where there are too many names, every second, third, ... curve is.
     let room = ((bottom - top) / LINE) as usize;
@@ -66,9 +80,9 @@ pub fn survival(summary: &Summary, scene: &Scene) -> Option<String> {
             &[at, [right + 4.0, at[1]], [right + 14.0, place], [right + 18.0, place]],
             &format!("stroke=\"{}\"", shade(i)),
         );
-        svg.text([right + 22.0, place + 4.0], Align::Start, "", &format!("≤ {}", number(curves[i].limit, None)));
+        svg.text([right + 22.0, place + 4.0], Align::Start, "", &format!("{sign}{}", number(curves[i].limit, None)));
     }
-    svg.text([right + 22.0, 24.0], Align::Start, &format!("fill=\"{MUTED}\""), "limit");
+    svg.text([right + 22.0, 24.0], Align::Start, &format!("fill=\"{MUTED}\""), name);
     svg.text(
         [right + 22.0, 38.0 - 1.0],
         Align::Start,

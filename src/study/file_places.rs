@@ -51,10 +51,21 @@ pub(super) fn explain(text: &str, error: &toml::de::Error) -> PlanError {
              [sweep] it is one"
                 .to_owned(),
         ),
+        _ if is_tether_of_another(key, message) => PlanFault::Value(
+            "only walks whose steps are drawn one after the other are held back by a tether: give the kind uniform, \
+             gaussian or persistent; whether other ropes are ever longer say tallies.limits"
+                .to_owned(),
+        ),
         _ => PlanFault::Value(format!("{message}{}", nearest.unwrap_or_default())),
     };
     let line = key.map(|key| line(text, key.span.start));
     PlanError { line, key: key.map(|key| key.name.clone()), ..fault.into() }
+}
+
+/// Whether the fault is that a walk is given a tether whose kind has none.
+fn is_tether_of_another(key: Option<&Key>, message: &str) -> bool {
+    message.starts_with("unknown field")
+        && key.is_some_and(|key| ["walk.tether", "walk.at_tether"].contains(&&*key.name))
 }
 
 /// The line of the key `name`, if `text` has it; of its table, if the file leaves it out.
@@ -182,6 +193,21 @@ mod tests {
             (format!("{walk}step = 1.0\n[run]\nblock = 10\ntraces = 0"), "line 8: run: `traces` and `block`"),
             (format!("{walk}step = 1.0\nat_walls = \"jump\""), "line 8: walk.at_walls: unknown variant `jump`"),
             (format!("{walk}step = -1.0"), "line 7: walk.step: -1 is no length"),
+            (format!("{walk}step = 1.0\ntether = 0"), "line 8: walk.tether: 0 is no length of a tether; give a number"),
+            (format!("{walk}step = 1.0\ntether = 'long'"), "line 8: walk.tether: invalid type"),
+            (format!("{walk}step = 1.0\nat_tether = 'slide'"), "line 8: walk.at_tether: there is no tether; give"),
+            (format!("{walk}step = 1.0\ntether = 5\nat_tether = 'jump'"), "line 9: walk.at_tether: unknown variant"),
+            (format!("{walk}step = 1.0\ntehter = 5"), "line 8: walk.tehter: unknown field `tehter`"),
+            (
+                format!("{walk}step = 1.0\ntether = 5").replace("uniform", "waypoints"),
+                "line 8: walk.tether: only walks whose steps are drawn one after the other are held back by a tether: \
+                 give the kind uniform, gaussian or persistent;",
+            ),
+            (
+                "[walk]\nkind = \"given\"\nfile = \"a.csv\"\nat_tether = 'stay'".to_owned(),
+                "line 7: walk.at_tether: only",
+            ),
+            (format!("{walk}step = 1.0\n[run]\ntether = 5"), "line 9: run.tether: unknown field `tether`"),
             (format!("{walk}step = 1.0\n[tallies]\nlimits = [1.0, 'a']"), "line 9: tallies.limits: invalid type"),
             (format!("{walk}step = 1.0\nwalk.x = 1"), "line 8: walk.walk: unknown field `walk`"),
             (format!("{walk}step = 1.0\n[wlak]\nstep = 1.0"), "line 8: wlak: unknown field `wlak`"),

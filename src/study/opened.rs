@@ -66,7 +66,7 @@ impl Study {
         let bounds = models.iter().map(|m| m.bounds()).reduce(|(l, h), (low, high)| (l.min(low), h.max(high)));
         let bounds = bounds.expect("a study has an anchor");
         let simplified = plan.run.trade().simplified(&models).map_err(|e| PlanError::at_key("run.simplify", e))?;
-        let setting = Setting::new(&plan.tallies, simplified, bounds, plan.walk.steps());
+        let setting = Setting::new(&plan.tallies, simplified, bounds, (plan.walk.steps(), plan.walk.tether()));
         let tallies = Tallies::new(&plan.tallies, setting)?;
         centres(&plan, tallies.setting.models[0].scene())?;
         let file = plan.scene.file.as_ref().map(|file| folder.join(file));
@@ -182,7 +182,7 @@ impl Study {
         let model = &self.given_models[self.tallies.setting.anchor(trace.id)];
         let settled = settle_owned(model, trace);
         let still = settled.still();
-        settled.with_walked(Walked { still, met: 0 })
+        settled.with_walked(Walked { still, ..Walked::default() })
     }
 
     /// A trace as ropes see it: what the plan leaves out of it for speed is left out.
@@ -209,10 +209,14 @@ impl Study {
             steps += trace.steps();
         }
         let start = *self.drawn(0).ends().last().expect("a trace has points");
+        let (tethered, longer) = match self.plan.walk.tether() {
+            Some(tether) => (format!(" or strain the tether of {}", number(tether.length)), ", a longer tether"),
+            None => Default::default(),
+        };
         Err(PlanError::new(format!(
             "walk: all walks stand still: none of the {steps} steps of the first {few} traces leads anywhere, that of \
-             trace 0 from {}, since each would meet a wall or the border of the scene; give a step shorter than {}, or \
-             another anchor",
+             trace 0 from {}, since each would meet a wall or the border of the scene{tethered}; give a step shorter \
+             than {}{longer}, or another anchor",
             Shown(start),
             number(step)
         )))

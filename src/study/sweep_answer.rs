@@ -12,7 +12,7 @@ use super::opened::Study;
 use super::paired::{Blocks, paired};
 use super::state::{State, Stopped};
 use super::sweep::shown;
-use super::tally::{Scalar, ShareWithin};
+use super::tally::{Scalar, ShareWithin, TetherAnswer};
 
 /// What the studies of a sweep say, side by side. It holds no times and no names of machines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,6 +47,9 @@ pub struct PointAnswer {
     pub scalars: Vec<Scalar>,
     /// For each of `tallies.limits`, ascending: the share of ropes that never were longer, up to their trace's end.
     pub within: Vec<ShareWithin>,
+    /// How its tether held the walks back; `None` without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tether: Option<TetherAnswer>,
     /// By how much the answer differs from that of the point `against`; `None` before the first block of either.
     pub differences: Option<Differences>,
 }
@@ -94,6 +97,7 @@ impl PointAnswer {
             stopped: summary.stopped,
             confidence: study.plan().tallies.confidence,
             within: within.collect(),
+            tether: summary.tether,
             differences: differences.filter(|_| !is_empty),
             scalars: if is_empty { Vec::new() } else { summary.scalars },
         }
@@ -110,6 +114,7 @@ impl PointAnswer {
             confidence,
             scalars: Vec::new(),
             within: Vec::new(),
+            tether: None,
             differences: None,
         }
     }

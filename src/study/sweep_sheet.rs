@@ -3,14 +3,15 @@
 use super::estimate::Estimate;
 use super::sweep::shown;
 use super::sweep_answer::{PointAnswer, SweepAnswer};
-use super::tally::scalar_names;
+use super::tally::{TetherAnswer, scalar_names};
 use crate::geometry::number;
 use crate::output::{Column, Sheet};
 
 impl SweepAnswer {
     /// One row a point: its folder, the values of the keys, how many traces and blocks it has, and then of each scalar
     /// the mean with its error and interval, the quantiles with their intervals and the difference of the mean, and of
-    /// each limit the share of ropes within it and the difference of that. What is not known is null.
+    /// each limit the share of ropes within it and the difference of that; where there are tethers, how they held the
+    /// walks back. What is not known is null.
     pub fn sheet(&self) -> Sheet {
         let mut sheet = Sheet::default();
         sheet.push("point", Column::Text(self.points.iter().map(|point| Some(point.folder.clone())).collect()));
@@ -39,6 +40,11 @@ impl SweepAnswer {
             let name = format!("within_{}", number(limit));
             self.push(&mut sheet, &name, |point| point.within(limit));
             self.push(&mut sheet, &format!("{name}_difference"), |point| point.share_difference(limit));
+        }
+        if self.points.iter().any(|point| point.tether.is_some()) {
+            for (name, of) in TETHER {
+                self.push(&mut sheet, name, |point| point.tether.as_ref().and_then(of));
+            }
         }
         sheet
     }
@@ -72,6 +78,16 @@ impl SweepAnswer {
         }
     }
 }
+
+/// Something that is told of a tether.
+type Told = fn(&TetherAnswer) -> Option<Estimate>;
+
+/// All of it.
+const TETHER: [(&str, Told); 3] = [
+    ("held_back", |tether| Some(tether.held_back)),
+    ("never_held_back", |tether| Some(tether.never)),
+    ("first_held_back_mean", |tether| tether.first),
+];
 
 /// Part of an estimate.
 type Taken = fn(&Estimate) -> Option<f64>;

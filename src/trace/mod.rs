@@ -25,6 +25,6 @@ pub use given::{EndsTrace, Trace};
 pub use read::{TraceReader, read_traces};
 pub(crate) use settle::{first_violation, settle_clear};
 pub use settle::{settle, settle_owned};
-pub(crate) use settled::Walked;
+pub(crate) use settled::{HeldBack, Walked};
 pub use settled::{SettledTrace, Violation, ViolationKind, bounds};
 pub use settled_ends::{EndsFault, SettledEnds, settle_ends};

@@ -104,6 +104,25 @@ pub(crate) struct Walked {
     pub still: usize,
     /// How many steps of a random walk met a wall or the border of the scene as they were drawn first.
     pub met: usize,
+    /// How a tether held a random walk back; `None` without one.
+    pub held_back: Option<HeldBack>,
+}
+
+/// The steps of a random walk that its tether held back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct HeldBack {
+    /// How many there are.
+    pub steps: usize,
+    /// The number of the first, counted from 1.
+    pub first: Option<usize>,
+}
+
+impl HeldBack {
+    /// Notes a step; they come in order.
+    pub(crate) fn note(&mut self, step: usize) {
+        self.steps += 1;
+        self.first = self.first.or(Some(step));
+    }
 }
 
 /// What became of a trace that was coarsened.

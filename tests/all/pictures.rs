@@ -8,8 +8,8 @@ use resvg::usvg::roxmltree::Document;
 use tautline::picture;
 use tautline::scene::Scene;
 use tautline::study::{
-    Bin, ByObstacle, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, ObstacleContacts, Plan, Quantile,
-    Scalar, Stopped, Summary, Survival, SurvivalPoint,
+    AtTether, Bin, ByObstacle, Cell, CommonRope, Contact, Estimate, Histogram, Map, Obstacle, ObstacleContacts, Plan,
+    Quantile, Scalar, Stopped, Summary, Survival, SurvivalPoint, TetherAnswer, Visited,
 };
 
 /// Random numbers that are the same everywhere.
@@ -116,7 +116,7 @@ fn answer(scene: &Scene) -> Summary {
         let length = (visits > 30).then(|| about(far * (1.1 + 0.3 * draws.next())));
         (visits > 30 || contacts > 0.0).then(|| Cell { cell: i, visits, length, contacts: about(contacts) })
     });
-    let map = Map { low: low.into(), cell, columns, rows, cells: cells.collect() };
+    let map = Map { low: low.into(), cell, columns, rows, visited: None, cells: cells.collect() };
 
     let mut near: Vec<(u32, DVec2)> =
         scene.vertices().iter().copied().enumerate().map(|(i, v)| (i as u32, v)).collect();
@@ -161,6 +161,7 @@ fn answer(scene: &Scene) -> Summary {
             .collect(),
         histograms: lengths.iter().map(|&(n, m)| histogram(n, m)).collect(),
         survival: [0.2, 0.3, 0.45, 0.6, 0.9].map(curve).into(),
+        tether: None,
         obstacles: near
             .iter()
             .enumerate()
@@ -244,6 +245,44 @@ fn every_picture(summary: &Summary, scene: &Scene) -> Vec<(String, String, Strin
 }
 
 #[test]
+fn a_study_with_a_tether_begins_with_it() {
+    let scene = islands(1.0);
+    let mut summary = answer(&scene);
+    let curve = summary.survival[0].curve.clone();
+    summary.tether = Some(TetherAnswer {
+        length: 2.5,
+        at: AtTether::Slide,
+        held_back: about(0.25),
+        never: about(0.125),
+        first: Some(about(100.0)),
+        quantiles: Vec::new(),
+        curve: curve.clone(),
+    });
+    summary.map.as_mut().unwrap().visited = Some(Visited { area: 40.0, inner: 30.0 });
+    let all = every_picture(&summary, &scene);
+    let (stem, title, svg) = &all[0];
+    assert_eq!((stem.as_str(), all.len()), ("held-back", 8));
+    let words = texts(svg);
+    assert!(words.iter().any(|text| text == "2.5") && title.contains("not held back yet"), "{words:?}");
+    // It is the survival curve of one limit, in other words.
+    summary.survival = vec![Survival { limit: 2.5, curve }];
+    let line = |svg: &str| svg.lines().filter(|line| line.contains("<polygon")).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(line(svg), line(&picture::survival(&summary, &scene).unwrap()));
+    let sentence = picture::sentence(&summary, &scene).unwrap();
+    assert!(sentence.starts_with("a tether of 2.5"), "{sentence}");
+    assert!(sentence.ends_with(" holds the walks back in 25.0 % (22.5–27.5) of their steps"), "{sentence}");
+    let page = picture::page(&summary, &scene, &[], None);
+    for fact in [
+        "<dt>steps held back by the tether</dt><dd>25.0 % (22.5–27.5)</dd>",
+        "<dt>walks never held back</dt><dd>12.5 % (11.2–13.8)</dd>",
+        "<dt>first step held back, on average where one was</dt><dd>100 (90–110)</dd>",
+        "<dt>area visited, in whole cells</dt><dd>40; inner cells 30</dd>",
+    ] {
+        assert!(page.contains(fact), "{fact}\n{page}");
+    }
+}
+
+#[test]
 fn a_study_has_all_pictures() {
     let scene = islands(1.0);
     let summary = answer(&scene);
@@ -274,7 +313,7 @@ fn least(scene: &Scene) -> Summary {
     summary.ropes = vec![rope];
     let cell = Cell { cell: 0, visits: 3, length: Some(bare(1.0)), contacts: bare(0.5) };
     let low = scene.vertices().iter().copied().reduce(DVec2::min).unwrap_or_default();
-    summary.map = Some(Map { low: low.into(), cell: 4.0, columns: 1, rows: 1, cells: vec![cell] });
+    summary.map = Some(Map { low: low.into(), cell: 4.0, columns: 1, rows: 1, visited: None, cells: vec![cell] });
     summary
 }
 

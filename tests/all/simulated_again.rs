@@ -6,9 +6,8 @@ use std::f64::consts::PI;
 use std::process::Command;
 
 use assert_cmd::cargo::cargo_bin;
-use robust::{Coord, orient2d};
 
-type P = [f64; 2];
+use crate::naive_rope::{NaiveRope, P, distance, orient};
 
 /// The constants of the page, by their names.
 struct Page(HashMap<String, f64>);
@@ -173,11 +172,6 @@ impl Walk<'_> {
     }
 }
 
-fn orient(p: P, q: P, r: P) -> f64 {
-    let coord = |p: P| Coord { x: p[0], y: p[1] };
-    orient2d(coord(p), coord(q), coord(r))
-}
-
 fn is_same_side(a: f64, b: f64) -> bool {
     (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
 }
@@ -249,26 +243,102 @@ fn touches(u: P, v: P, a: P, b: P) -> bool {
     is_near && !is_same_side(orient(u, v, a), orient(u, v, b)) && !is_same_side(orient(a, b, u), orient(a, b, v))
 }
 
-/// The points of a trace.
+/// A tether, and the rope that it is.
+struct Tether<'a> {
+    length: f64,
+    at: &'a str,
+    rope: NaiveRope,
+    /// Of walls.
+    ends: Vec<P>,
+}
+
+impl Tether<'_> {
+    /// Has the free end go from `here` to `to` if the rope is no longer than the tether there.
+    fn goes(&mut self, here: P, to: P) -> bool {
+        let moved = self.rope.moved(here, to, &self.ends);
+        let goes = to == here || moved.length(to) <= self.length;
+        if goes && to != here {
+            self.rope = moved;
+        }
+        goes
+    }
+
+    /// Where a step ends that would lead too far, to `to`.
+    fn held_back(&mut self, page: &Page, room: &Room, walk: &mut Walk<'_>, here: P, to: P) -> P {
+        match self.at {
+            "stay" => {
+                walk.draw_again();
+                walk.take();
+            }
+            "turn" => {
+                for _ in 0..page.count("draws of a step that meets a wall") {
+                    let step = walk.draw_again();
+                    let next = [here[0] + step[0], here[1] + step[1]];
+                    if room.is_open(here, next) && self.goes(here, next) {
+                        walk.take();
+                        return next;
+                    }
+                }
+            }
+            _ => {
+                let rope = self.rope.moved(here, to, &self.ends);
+                let (mut c, mut q, mut before) = (to, rope.anchor(), 0.0);
+                for next in rope.turns().chain([to]) {
+                    (c, q) = (q, next);
+                    if before + distance(c, q) > self.length {
+                        break;
+                    }
+                    before += distance(c, q);
+                }
+                let sizes = [self.length, c[0], c[1], q[0], q[1]];
+                let e = sizes.iter().fold(0.0, |most: f64, x| most.max(x.abs())) / 2f64.powi(52);
+                for less in 0..=page.count("slides drawn in") as i32 {
+                    let less = if less == 0 { 0.0 } else { e * 2f64.powi(less - 1) };
+                    let share = (self.length - before - less).max(0.0) / distance(c, q);
+                    let next = [0, 1].map(|i| c[i] + (q[i] - c[i]) * share);
+                    if !room.is_open(here, next) {
+                        break;
+                    }
+                    if self.goes(here, next) {
+                        return next;
+                    }
+                }
+            }
+        }
+        here
+    }
+}
+
+/// The points of a trace, how many steps met a wall, and how many the tether held back.
 fn simulated(
     page: &Page,
     room: &Room,
     anchor: P,
     walk: &mut Walk<'_>,
-    at_walls: &str,
+    (at_walls, mut tether): (&str, Option<Tether<'_>>),
     steps: usize,
-) -> (Vec<P>, usize) {
-    let (mut points, mut here, mut met) = (vec![anchor], anchor, 0);
+) -> (Vec<P>, usize, usize) {
+    let (mut points, mut here, mut met, mut held) = (vec![anchor], anchor, 0, 0);
     for _ in 0..steps {
         let step = walk.draw();
         let next = [here[0] + step[0], here[1] + step[1]];
         if room.is_open(here, next) {
-            walk.take();
-            here = next;
+            let goes = tether.as_mut().is_none_or(|tether| tether.goes(here, next));
+            if goes || tether.as_ref().is_some_and(|tether| tether.at == "slide") {
+                walk.take();
+            }
+            here = match &mut tether {
+                Some(tether) if !goes => {
+                    held += 1;
+                    tether.held_back(page, room, walk, here, next)
+                }
+                _ => next,
+            };
             points.push(here);
             continue;
         }
         met += 1;
+        let before = here;
         match at_walls {
             "redraw" => {
                 for _ in 0..page.count("draws of a step that meets a wall") {
@@ -291,9 +361,15 @@ fn simulated(
                 here = thrown.unwrap_or(here);
             }
         }
+        if let Some(tether) = &mut tether
+            && !tether.goes(before, here)
+        {
+            held += 1;
+            here = tether.held_back(page, room, walk, before, here);
+        }
         points.push(here);
     }
-    (points, met)
+    (points, met, held)
 }
 
 #[test]
@@ -325,19 +401,26 @@ fn walks_are_simulated_again_by_the_page_alone() {
             ends.windows(2).map(|pair| [pair[0], pair[1]]).collect::<Vec<_>>()
         })
         .collect();
+    let mut ends: Vec<P> = walls.iter().flatten().copied().collect();
+    ends.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+    ends.dedup();
     let room = Room { walls, low: [0.0, 0.0], high: [9.0, 6.0] };
     let (seed, step, steps, turn) = (0x1234_5678_9abc_def0_u64, 0.75, 400, 0.6);
-    let mut all_met = 0;
+    let (anchor, length) = ([2.0, 3.5], 4.5);
+    let (mut all_met, mut all_held) = (0, 0);
+    let tethers = [None, Some("stay"), Some("slide"), Some("turn")];
     for kind in ["uniform", "gaussian", "persistent"] {
-        for at_walls in ["redraw", "reject", "reflect"] {
+        for (at_walls, at_tether) in ["redraw", "reject", "reflect"].into_iter().flat_map(|w| tethers.map(|t| (w, t))) {
             let turn_of = if kind == "persistent" { format!("turn = {turn}\n") } else { String::new() };
+            let tether = at_tether.map_or(String::new(), |at| format!("tether = {length}\nat_tether = \"{at}\"\n"));
             let study = format!(
                 "[scene]\nfile = \"s.wkt\"\n[walk]\nkind = \"{kind}\"\nstep = {step}\nsteps = {steps}\n{turn_of}\
-                 at_walls = \"{at_walls}\"\n[run]\ntraces = 3\nseed = {seed}\n[outputs]\npictures = false\n"
+                 at_walls = \"{at_walls}\"\n{tether}[run]\ntraces = 3\nseed = {seed}\n[outputs]\npictures = false\n"
             );
             std::fs::write(folder.path().join("s.toml"), study).unwrap();
-            let out = format!("{kind}-{at_walls}");
+            let out = format!("{kind}-{at_walls}-{}", at_tether.unwrap_or("free"));
             run(&format!("study run s.toml --out {out} --engine reference"));
+            let mut held_in_all = 0;
             for trace in 0..3 {
                 run(&format!("study replay {out} --trace {trace} --points p.csv"));
                 let rows = std::fs::read_to_string(folder.path().join("p.csv")).unwrap();
@@ -361,18 +444,27 @@ fn walks_are_simulated_again_by_the_page_alone() {
                     spread: turn,
                     ahead: vec![],
                 };
-                let (points, met) = simulated(&page, &room, [2.0, 3.5], &mut walk, at_walls, steps);
+                let rope = NaiveRope::new(anchor);
+                let tether = at_tether.map(|at| Tether { length, at, rope, ends: ends.clone() });
+                let (points, met, held) = simulated(&page, &room, anchor, &mut walk, (at_walls, tether), steps);
                 let points: Vec<[u64; 2]> = points.iter().map(|p| p.map(f64::to_bits)).collect();
                 assert_eq!(points.len(), steps + 1);
                 for (i, (ours, theirs)) in points.iter().zip(&drawn).enumerate() {
                     let shown = [ours, theirs].map(|p| p.map(f64::from_bits));
-                    assert_eq!(ours, theirs, "{kind}, {at_walls}, trace {trace}, point {i}: {shown:?}");
+                    assert_eq!(ours, theirs, "{out}, trace {trace}, point {i}: {shown:?}");
                 }
                 assert_eq!(points.len(), drawn.len());
-                assert!(met > 20, "{kind}, {at_walls}: only {met} steps met a wall");
+                assert!(met > if at_tether.is_none() { 20 } else { 5 }, "{out}: only {met} steps met a wall");
                 all_met += met;
+                held_in_all += held;
             }
+            all_held += held_in_all;
+            let summary = std::fs::read_to_string(folder.path().join(out).join("summary.json")).unwrap();
+            let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+            let told = summary["tether"]["held_back"]["value"].as_f64();
+            let told = told.map(|share| (share * (3 * steps) as f64).round() as usize);
+            assert_eq!(told, at_tether.map(|_| held_in_all));
         }
     }
-    assert!(all_met > 1000, "{all_met}");
+    assert!(all_met > 4000 && all_held > 2000, "{all_met} {all_held}");
 }

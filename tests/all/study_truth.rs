@@ -104,7 +104,7 @@ fn two_gaussian_steps_past_a_wall_are_as_integrated() {
 
 /// The length of the shortest path among the walls, by Dijkstra's algorithm over all pairs that see each other; and the
 /// path.
-fn shortest(model: &Model, goal: DVec2) -> (f64, Vec<DVec2>) {
+pub(crate) fn shortest(model: &Model, goal: DVec2) -> (f64, Vec<DVec2>) {
     let mut points = model.vertices().to_vec();
     points.extend([model.anchor(), goal]);
     let blocked = |a: DVec2, b: DVec2| {

@@ -32,6 +32,7 @@ fn point(values: Vec<Value>, mean: Option<f64>) -> PointAnswer {
         confidence: 0.95,
         scalars: mean.into_iter().map(scalar).collect(),
         within: Vec::new(),
+        tether: None,
         differences: None,
     }
 }

@@ -10,7 +10,7 @@ use tautline::geometry::number;
 use tautline::picture::sentence;
 use tautline::scene::Scene;
 use tautline::session::{RunCost, RunReport, Session};
-use tautline::study::{AtWalls, Estimate, Stopped, Study, Summary, quantity};
+use tautline::study::{AtWalls, Estimate, Stopped, Study, Summary, TetherAnswer, quantity};
 
 use crate::cli::failure::Failure;
 use crate::cli::words::{counted, grouped, short};
@@ -199,13 +199,20 @@ pub(super) fn standing(summary: &Summary) -> Option<String> {
         (Some(share), Some(AtWalls::Reflect)) => format!(", {} were thrown back at walls", percent(share)),
         _ => String::new(),
     };
-    Some(format!("{still} of the steps stood still{met}"))
+    let held = summary
+        .tether
+        .as_ref()
+        .map_or(String::new(), |tether| format!(", {} were held back by the tether", percent(tether.held_back.value)));
+    Some(format!("{still} of the steps stood still{met}{held}"))
 }
 
 /// The answer in one sentence and one picture: how much of each tether's length is needed by which share of the walks.
 fn tether(summary: &Summary, scene: &Scene) -> String {
     let Some(sentence) = sentence(summary, scene) else { return String::new() };
     let mut text = format!("{}\n\n", escaped(&sentence));
+    if let Some(tether) = &summary.tether {
+        return text + &first_held_back(tether);
+    }
     let longest = summary.scalars.iter().find(|scalar| scalar.name == "max_length");
     let (quantiles, most) = longest.map_or((&[][..], 0.0), |scalar| (&scalar.quantiles[..], scalar.max));
     for quantile in quantiles {
@@ -215,6 +222,17 @@ fn tether(summary: &Summary, scene: &Scene) -> String {
         text += &format!("{share:>8} of them up to {length:>10}  {}\n", "#".repeat(marks));
     }
     text.push('\n');
+    text
+}
+
+/// When the tether held walks back first.
+fn first_held_back(tether: &TetherAnswer) -> String {
+    let mut text = String::new();
+    for quantile in &tether.quantiles {
+        let (share, step) = (format!("{} %", short_share(quantile.share)), short(quantile.value.value));
+        text += &format!("{share:>8} of them are held back by step {step:>8}  ({})\n", interval(&quantile.value));
+    }
+    text += &format!("{:>8} of them never are  {}\n\n", percent(tether.never.value), shares(&tether.never));
     text
 }
 

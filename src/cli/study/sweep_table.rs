@@ -26,6 +26,14 @@ pub(super) fn table(answer: &SweepAnswer) -> String {
         text += &format!("\nropes never longer than {}\n", short(limit));
         text += &lines(answer, &[], percent, |point| (point.within(limit), point.share_difference(limit), Vec::new()));
     }
+    if answer.points.iter().any(|point| point.tether.is_some()) {
+        text += "\nsteps held back by the tether, and walks that never were\n";
+        text += &lines(answer, &["never"], percent, |point| {
+            let tether = point.tether.as_ref();
+            let never = tether.map_or(NONE.to_owned(), |tether| percent(tether.never.value));
+            (tether.map(|tether| tether.held_back), None, vec![never])
+        });
+    }
     text
 }
 

@@ -56,7 +56,13 @@ fn merged<'a>(study: &Study, parts: impl Iterator<Item = &'a State>, is_partial:
 
 #[test]
 fn a_study_that_is_stopped_within_blocks_ends_the_same() {
-    let study = study();
+    let tethered = STUDY.replace("start", "tether = 3.0\nat_tether = \"slide\"\nstart");
+    for text in [STUDY, &tethered] {
+        ends_the_same_if_stopped(Study::open(Plan::parse(text).unwrap(), Path::new("")).unwrap());
+    }
+}
+
+fn ends_the_same_if_stopped(study: Study) {
     let (whole, records, sizes) = stopped_after_each(&study, Shard::WHOLE, 70);
     assert_eq!(sizes, [40]);
     assert!(records.iter().map(|record| record.trace).eq(0..40));

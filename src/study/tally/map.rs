@@ -1,6 +1,6 @@
 //! The plane, cell by cell.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec2;
 use rustc_hash::FxHashMap as HashMap;
@@ -51,6 +51,17 @@ impl Grid {
         // What lies on the upper border belongs to the last cells.
         let [column, row] = [(at.x, self.columns), (at.y, self.rows)].map(|(c, most)| (c as u32).min(most - 1));
         Some(column + self.columns * row)
+    }
+
+    /// What it comes to that free ends were seen in these cells.
+    fn visited(&self, seen: BTreeSet<u32>) -> Visited {
+        let near = |at: u32, most: u32| at.saturating_sub(1)..=(at + 1).min(most - 1);
+        let is_inner = |cell: &&u32| {
+            let (column, row) = (**cell % self.columns, **cell / self.columns);
+            near(row, self.rows).all(|r| near(column, self.columns).all(|c| seen.contains(&(c + self.columns * r))))
+        };
+        let area = |cells: usize| cells as f64 * self.cell * self.cell;
+        Visited { area: area(seen.len()), inner: area(seen.iter().filter(is_inner).count()) }
     }
 }
 
@@ -163,7 +174,9 @@ impl Tally for Cells {
                 contacts: confidence.around(contacts, contacts_error, totals.looks.blocks),
             }
         };
+        let seen = || counts.iter().filter(|(_, cell)| cell.visits.sum > 0).map(|(&number, _)| number);
         Some(Map {
+            visited: setting.tether.map(|_| grid.visited(seen().collect())),
             low: grid.low.into(),
             cell: grid.cell,
             columns: grid.columns,
@@ -184,8 +197,22 @@ pub struct Map {
     pub columns: u32,
     /// How many one above the other.
     pub rows: u32,
+    /// How much of the plane the walks came to, where a tether held them back.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visited: Option<Visited>,
     /// The cells in which a free end was seen, or a rope touched a wall end, in the order of their numbers.
     pub cells: Vec<Cell>,
+}
+
+/// How much of the plane free ends were seen in, in the square of the scene's unit. That grows with the walks, and is
+/// no estimate of what they could come to: it has no interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Visited {
+    /// The area of the cells in which a free end was seen: of too much, by as much as cells lie across the border.
+    pub area: f64,
+    /// That of those whose neighbours, the eight around it as far as there are so many, were all seen too: of too
+    /// little.
+    pub inner: f64,
 }
 
 /// A cell of the map.
@@ -219,5 +246,17 @@ mod tests {
         let grid = Grid::new(DVec2::ZERO, DVec2::ONE, 49);
         assert_eq!(grid.of(DVec2::ONE), Some(49 * 49 - 1));
         assert_eq!(Grid::new(DVec2::ZERO, DVec2::ZERO, 8).of(DVec2::ZERO), Some(0));
+    }
+
+    #[test]
+    fn cells_are_inner_whose_neighbours_were_all_seen() {
+        // Four columns of half a unit, and three rows.
+        let grid = Grid::new(DVec2::ZERO, DVec2::new(2.0, 1.5), 4);
+        let visited = |cells: &[u32]| grid.visited(cells.iter().copied().collect());
+        assert_eq!(visited(&[]), Visited { area: 0.0, inner: 0.0 });
+        // All three rows of the first three columns: the cells of the first two have all that they can have.
+        assert_eq!(visited(&[0, 1, 2, 4, 5, 6, 8, 9, 10]), Visited { area: 2.25, inner: 1.5 });
+        // Without the one in the middle none has.
+        assert_eq!(visited(&[0, 1, 2, 4, 6, 8, 9, 10]), Visited { area: 2.0, inner: 0.0 });
     }
 }

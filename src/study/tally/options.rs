@@ -37,6 +37,16 @@ fn are_usual(quantiles: &[f64]) -> bool {
     quantiles == QUANTILES
 }
 
+impl TallyPlan {
+    /// Which quantiles are given, each once.
+    pub(super) fn ascending_quantiles(&self) -> Vec<f64> {
+        let mut quantiles = self.quantiles.clone();
+        quantiles.sort_by(f64::total_cmp);
+        quantiles.dedup();
+        quantiles
+    }
+}
+
 impl Default for TallyPlan {
     fn default() -> Self {
         TallyPlan {

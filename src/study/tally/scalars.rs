@@ -82,7 +82,7 @@ impl Quantity {
 type Classes = BTreeMap<u64, u64>;
 
 /// The class of the number of that rank, ranks counted from 1; the last class for ranks beyond all.
-fn of_rank(classes: &Classes, rank: u64) -> Option<u64> {
+pub(super) fn of_rank(classes: &Classes, rank: u64) -> Option<u64> {
     let mut below = 0;
     let reached = classes.iter().find(|&(_, &count)| {
         below += count;
@@ -159,10 +159,7 @@ impl Tally for Scalars {
     }
 
     fn new(options: &TallyPlan, _: &Setting) -> Result<Self, PlanError> {
-        let mut quantiles = options.quantiles.clone();
-        quantiles.sort_by(f64::total_cmp);
-        quantiles.dedup();
-        Ok(Scalars { quantiles })
+        Ok(Scalars { quantiles: options.ascending_quantiles() })
     }
 
     fn add(&self, part: &mut Part, traced: &Traced<'_>) {

@@ -9,6 +9,7 @@ use crate::geometry::number;
 use crate::scene::Model;
 use crate::study::estimate::Confidence;
 use crate::study::plan_error::PlanError;
+use crate::study::walk::Tether;
 
 /// What all tallies of a study go by.
 pub(crate) struct Setting {
@@ -19,6 +20,8 @@ pub(crate) struct Setting {
     pub high: DVec2,
     /// How many steps each trace has; `None` for given traces, of which that is only known in the end.
     pub steps: Option<u32>,
+    /// The tether that holds the walks back, if there is one.
+    pub tether: Option<Tether>,
     /// How sure intervals are.
     pub confidence: Confidence,
     /// The label of each wall end; empty if there are none.
@@ -34,15 +37,15 @@ impl Setting {
         Err(PlanError::new(format!("tallies.confidence: {} is not between 0 and 1", number(options.confidence))))
     }
 
-    /// For ropes in `models`, and traces of so many steps between `low` and `high`.
+    /// For ropes in `models`, and traces of so many steps, held back by that tether, between `low` and `high`.
     pub(crate) fn new(
         options: &TallyPlan,
         models: Vec<Arc<Model>>,
         (low, high): (DVec2, DVec2),
-        steps: Option<u32>,
+        (steps, tether): (Option<u32>, Option<Tether>),
     ) -> Self {
         let labels = models[0].scene().labels().into_iter().map(|label| label.map(str::to_owned)).collect();
-        Setting { confidence: Confidence::new(options.confidence), models, low, high, steps, labels }
+        Setting { confidence: Confidence::new(options.confidence), models, low, high, steps, tether, labels }
     }
 
     pub(crate) fn model(&self, trace: u64) -> &Arc<Model> {

@@ -19,6 +19,14 @@ use crate::study::plan_error::PlanError;
 /// At how many steps survival curves are given.
 const TIMES: u64 = 100;
 
+/// The steps at which curves of walks of so many are given, ascending.
+pub(super) fn times(steps: u32) -> Vec<u64> {
+    let mut times: Vec<u64> =
+        (0..=TIMES).map(|i| (u128::from(steps) * u128::from(i) / u128::from(TIMES)) as u64).collect();
+    times.dedup();
+    times
+}
+
 /// The tally of when ropes become longer than each limit.
 pub(crate) struct Limits {
     /// The limits, ascending.
@@ -82,15 +90,9 @@ impl Tally for Limits {
     fn new(options: &TallyPlan, setting: &Setting) -> Result<Self, PlanError> {
         let mut limits = options.limits.clone();
         limits.sort_by(f64::total_cmp);
-        let mut times: Vec<u64> = match setting.steps {
-            Some(steps) => {
-                (0..=TIMES).map(|i| (u128::from(steps) * u128::from(i) / u128::from(TIMES)) as u64).collect()
-            }
-            // Nobody knows yet how long given traces are.
-            None => (0..4).chain((8..128).map(|i| (4 + i % 4) << (i / 4 - 2))).collect(),
-        };
-        times.dedup();
-        Ok(Limits { limits, times })
+        // Nobody knows yet how long given traces are.
+        let unknown = || (0..4).chain((8..128).map(|i| (4 + i % 4) << (i / 4 - 2))).collect();
+        Ok(Limits { limits, times: setting.steps.map_or_else(unknown, times) })
     }
 
     fn add(&self, part: &mut Self::Part, traced: &Traced<'_>) {
@@ -200,7 +202,7 @@ mod tests {
         let mut limits: Vec<f64> = (0..40).map(|i| 0.5 * f64::from(i)).collect();
         limits.extend(records.iter().flat_map(|record| [record.max_length, record.length]));
         let options = TallyPlan { limits, ..TallyPlan::default() };
-        let setting = Setting::new(&options, vec![model.clone()], model.bounds(), Some(200));
+        let setting = Setting::new(&options, vec![model.clone()], model.bounds(), (Some(200), None));
         let tally = Limits::new(&options, &setting).unwrap();
         let mut seen = 0;
         for (trace, record) in traces.iter().zip(&records) {

@@ -11,6 +11,9 @@ macro_rules! table {
             histograms: Vec<tally::Histogram> = tally::histograms::Histograms;
             /// For each limit, when the rope became longer.
             survival: Vec<tally::Survival> = tally::survival::Limits;
+            /// How the tether held the walks back; `None` without one.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            tether: Option<tally::TetherAnswer> = tally::tether::HeldBack;
             /// The obstacles that ropes were wound about at the end, the most often first.
             obstacles: Vec<tally::Obstacle> = tally::obstacles::Obstacles;
             /// The most common taut ropes at the end, the most common first.

@@ -10,6 +10,7 @@ use super::room::Room;
 use super::start::Start;
 use super::steps::StepByStep;
 use super::stride::Stride;
+use super::tether::AtTether;
 use crate::study::plan_error::PlanError;
 use crate::study::random::Random;
 
@@ -27,11 +28,24 @@ pub struct GaussianWalk {
     /// What becomes of a step that meets a wall.
     #[serde(default)]
     pub at_walls: AtWalls,
+    /// How long the tether is that holds the walk back: its rope is never longer. None without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tether: Option<f64>,
+    /// What becomes of a step at whose end the rope would be longer than the tether; `stay` without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_tether: Option<AtTether>,
 }
 
 impl Kind for GaussianWalk {
     fn basics(&self) -> Basics {
-        Basics { step: self.step, steps: self.steps, start: self.start, at_walls: Some(self.at_walls) }
+        Basics {
+            step: self.step,
+            steps: self.steps,
+            start: self.start,
+            at_walls: Some(self.at_walls),
+            tether: self.tether,
+            at_tether: self.at_tether,
+        }
     }
 
     fn drawer(&self, room: &Room) -> Result<Box<dyn Draw>, PlanError> {

@@ -5,9 +5,11 @@ use glam::DVec2;
 use super::at_walls::AtWalls;
 use super::room::Room;
 use super::start::{From, Start};
+use super::tether::{AtTether, Tether};
 use crate::geometry::{check_point, number};
 use crate::study::plan_error::PlanError;
 use crate::study::random::{Purpose, Random};
+use crate::trace::HeldBack;
 
 /// The most steps of a trace: its points are numbered in 31 bits.
 const MOST_STEPS: u32 = (1 << 31) - 2;
@@ -23,6 +25,22 @@ pub(crate) struct Basics {
     pub(super) start: Start,
     /// What becomes of a step that meets a wall; `None` for a walk none of whose steps is drawn so.
     pub(super) at_walls: Option<AtWalls>,
+    /// How long its tether is, if it has one.
+    pub(super) tether: Option<f64>,
+    /// What becomes of a step that the tether holds back.
+    pub(super) at_tether: Option<AtTether>,
+}
+
+impl Basics {
+    /// Those of a walk without a tether.
+    pub(super) fn free(step: f64, steps: u32, start: Start, at_walls: Option<AtWalls>) -> Self {
+        Basics { step, steps, start, at_walls, tether: None, at_tether: None }
+    }
+
+    /// The tether, if it has one.
+    pub(super) fn tether(&self) -> Option<Tether> {
+        self.tether.map(|length| Tether { length, at: self.at_tether.unwrap_or_default() })
+    }
 }
 
 /// A kind of walk, as a plan has it.
@@ -46,7 +64,7 @@ pub(crate) trait Kind {
 impl dyn Kind + '_ {
     /// Whether its numbers can be walked with.
     pub(super) fn check_all(&self) -> Result<(), PlanError> {
-        let Basics { step, steps, .. } = self.basics();
+        let Basics { step, steps, tether, at_tether, .. } = self.basics();
         if !(step > 0.0 && check_point(DVec2::new(step, 0.0)).is_ok()) {
             return Err(PlanError::new(format!(
                 "walk.step: {} is no length of a step; give a number above 0, in the scene's unit",
@@ -58,15 +76,39 @@ impl dyn Kind + '_ {
                 "walk.steps: a trace cannot have {steps} steps; give a whole number from 1 to {MOST_STEPS}"
             )));
         }
+        match (tether, at_tether) {
+            (Some(length), _) if !(length > 0.0 && check_point(DVec2::new(length, 0.0)).is_ok()) => {
+                return Err(PlanError::new(format!(
+                    "walk.tether: {} is no length of a tether; give a number above 0, in the scene's unit, or leave it \
+                     out",
+                    number(length)
+                )));
+            }
+            (None, Some(_)) => {
+                return Err(PlanError::new(
+                    "walk.at_tether: there is no tether; give its length as walk.tether, or leave this out",
+                ));
+            }
+            _ => {}
+        }
         self.check()
     }
 }
 
+/// A trace as it was drawn.
+pub(crate) struct Drawn {
+    /// Its points, in memory with room for one more.
+    pub(super) points: Vec<DVec2>,
+    /// How many of its steps met a wall or the border as they were drawn first.
+    pub(super) met: usize,
+    /// Which the tether held back, if there is one.
+    pub(super) held_back: Option<HeldBack>,
+}
+
 /// What draws the traces of one plan.
 pub(crate) trait Draw: Send + Sync {
-    /// The points of a trace that starts there, in memory with room for one more, and how many of its steps met a wall
-    /// or the border as they were drawn first.
-    fn draw(&self, room: &Room, start: From, dice: Dice) -> (Vec<DVec2>, usize);
+    /// A trace that starts there.
+    fn draw(&self, room: &Room, start: From, dice: Dice) -> Drawn;
 
     /// Whether steps keep clear of the walls: they may touch none, not even as they pass its end.
     fn keeps_clear(&self) -> bool {

@@ -4,6 +4,7 @@ mod at_walls;
 mod clearings;
 mod gaussian;
 mod kind;
+mod leash;
 mod links;
 mod paths;
 mod persistent;
@@ -11,6 +12,8 @@ mod room;
 mod start;
 mod steps;
 mod stride;
+mod tether;
+mod tethered;
 mod uniform;
 mod waypoints;
 
@@ -24,10 +27,11 @@ pub use self::at_walls::AtWalls;
 pub use self::gaussian::GaussianWalk;
 pub use self::persistent::PersistentWalk;
 pub use self::start::Start;
+pub use self::tether::{AtTether, Tether};
 pub use self::uniform::UniformWalk;
 pub use self::waypoints::WaypointDrive;
 
-use self::kind::{Dice, Draw, Kind};
+use self::kind::{Dice, Draw, Drawn, Kind};
 use self::room::Room;
 use self::start::Starts;
 use super::plan_error::PlanError;
@@ -93,6 +97,11 @@ impl WalkPlan {
         self.kind().and_then(|kind| kind.basics().at_walls)
     }
 
+    /// The tether that holds the free end back; `None` without one.
+    pub fn tether(&self) -> Option<Tether> {
+        self.kind().and_then(|kind| kind.basics().tether())
+    }
+
     /// How many steps each trace has; `None` for given traces.
     pub fn steps(&self) -> Option<u32> {
         self.kind().map(|kind| kind.basics().steps)
@@ -108,7 +117,8 @@ impl WalkPlan {
 ///
 /// No step leaves the scene's bounding box, the smallest that holds all walls and the anchor, and none breaks the rules
 /// of ropes: [`SettledTrace::violation`] is `None`. No step of a walk touches a wall; a drive along waypoints passes
-/// wall ends.
+/// wall ends. Where a [`Tether`] holds the free end back, the rope after a step is never longer: neither the exact one
+/// nor the length of it that results have.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -117,7 +127,8 @@ impl WalkPlan {
 /// use tautline::study::{AtWalls, Start, UniformWalk, WalkPlan, Walks};
 ///
 /// let model = Arc::new(Model::new(BuiltIn::Rooms.scene(1), None)?);
-/// let uniform = UniformWalk { step: 0.25, steps: 100, start: Start::Anchor, at_walls: AtWalls::Redraw };
+/// let (start, at_walls) = (Start::Anchor, AtWalls::Redraw);
+/// let uniform = UniformWalk { step: 0.25, steps: 100, start, at_walls, tether: None, at_tether: None };
 /// let walks = Walks::new(model, &WalkPlan::Uniform(uniform), 1)?;
 /// let trace = walks.trace(7);
 /// assert_eq!((trace.id(), trace.steps(), trace.violation()), (7, 100, None));
@@ -163,7 +174,7 @@ impl Walks {
             )));
         }
         let drawer = kind.drawer(&room)?;
-        let starts = Starts::new(&room.model, kind.basics().start)?;
+        let starts = Starts::new(&room.model, kind.basics().start, kind.basics().tether)?;
         Ok(Walks { room, drawer, starts, seed })
     }
 
@@ -172,15 +183,14 @@ impl Walks {
     pub fn trace(&self, number: u64) -> SettledTrace {
         let (model, dice) = (&self.room.model, Dice { seed: self.seed, trace: number });
         let start = self.starts.draw(model, &mut dice.of(Purpose::Start));
-        // As it is drawn, and how many of its steps met a wall or the border as they were drawn first.
-        let (points, met) = self.drawer.draw(&self.room, start, dice);
+        let Drawn { points, met, held_back } = self.drawer.draw(&self.room, start, dice);
         let walk = Trace { id: number, points };
         let settled = match self.drawer.keeps_clear() {
             true => settle_clear(model, walk),
             false => settle_owned(model, walk),
         };
         let still = settled.still();
-        settled.with_walked(Walked { still, met })
+        settled.with_walked(Walked { still, met, held_back })
     }
 }
 

@@ -17,7 +17,8 @@ pub enum Start {
     /// At the anchor.
     #[default]
     Anchor,
-    /// At a point drawn uniformly over what is visible from the anchor within the scene's bounding box.
+    /// At a point drawn uniformly over what is visible from the anchor within the scene's bounding box, no further away
+    /// than the tether is long, if there is one.
     Visible,
 }
 
@@ -28,8 +29,8 @@ pub(super) const TOO_WIDE: &str = "the scene's coordinates cannot be triangulate
 /// From where traces start.
 pub(super) enum Starts {
     Anchor,
-    /// From what is visible from the anchor: it lies in these triangles.
-    Visible(Region),
+    /// From what is visible from the anchor: it lies in these triangles. No further away than the tether is long.
+    Visible(Region, Option<f64>),
 }
 
 /// Where a trace starts.
@@ -40,23 +41,26 @@ pub(super) enum From {
 }
 
 impl Starts {
-    pub(super) fn new(model: &Model, start: Start) -> Result<Self, PlanError> {
+    pub(super) fn new(model: &Model, start: Start, tether: Option<f64>) -> Result<Self, PlanError> {
         let seen = |visibility: Visibility| Region::seen(model, &visibility);
         match start {
             Start::Anchor => Ok(Starts::Anchor),
             Start::Visible => Visibility::new(model)
                 .and_then(seen)
-                .map(Starts::Visible)
+                .map(|region| Starts::Visible(region, tether))
                 .ok_or_else(|| PlanError::new(format!("walk.start: {TOO_WIDE}; or let traces start at the anchor"))),
         }
     }
 
-    /// Where a trace starts: the anchor if nearly nothing is visible from there.
+    /// Where a trace starts: the anchor if nearly nothing is visible from there that the tether lets it reach.
     pub(super) fn draw(&self, model: &Model, random: &mut Random) -> From {
         match self {
             Starts::Anchor => From::Anchor,
-            Starts::Visible(region) => {
-                region.draw(random, |p| model.is_clear(model.anchor(), p)).map_or(From::Anchor, From::Place)
+            Starts::Visible(region, tether) => {
+                let anchor = model.anchor();
+                let is_near = |p: DVec2| tether.is_none_or(|length| anchor.distance(p) <= length);
+                let start = region.draw(random, |p| is_near(p) && model.is_clear(anchor, p));
+                start.map_or(From::Anchor, From::Place)
             }
         }
     }

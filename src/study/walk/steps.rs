@@ -1,13 +1,12 @@
 //! One step after the other, whatever they are like.
 
-use glam::DVec2;
-
 use super::at_walls::{AtWalls, meet};
 use super::clearings::{Clearing, Clearings};
-use super::kind::{Basics, Dice, Draw};
+use super::kind::{Basics, Dice, Draw, Drawn};
 use super::room::Room;
 use super::start::From;
 use super::stride::Stride;
+use super::tethered::Tethered;
 use crate::geometry::point;
 use crate::study::random::{Purpose, Random};
 
@@ -21,15 +20,18 @@ pub(super) struct StepByStep<F> {
 }
 
 impl<S: Stride, F: Fn(&mut Random) -> S + Send + Sync + 'static> StepByStep<F> {
-    /// For walks in a room.
+    /// For walks in a room; those of another kind where a tether holds them back.
     pub(super) fn boxed(room: &Room, basics: Basics, stride: F) -> Box<dyn Draw> {
+        if let Some(tether) = basics.tether() {
+            return Box::new(Tethered::new(room, basics, tether, stride));
+        }
         let at_walls = basics.at_walls.unwrap_or_default();
         Box::new(StepByStep { clearings: Clearings::new(room, basics.step), basics, at_walls, stride })
     }
 }
 
 impl<S: Stride, F: Fn(&mut Random) -> S + Send + Sync> Draw for StepByStep<F> {
-    fn draw(&self, room: &Room, start: From, dice: Dice) -> (Vec<DVec2>, usize) {
+    fn draw(&self, room: &Room, start: From, dice: Dice) -> Drawn {
         let mut random = dice.of(Purpose::Walk);
         let mut stride = (self.stride)(&mut random);
         let mut points = Vec::with_capacity(self.basics.steps as usize + 2);
@@ -59,6 +61,6 @@ impl<S: Stride, F: Fn(&mut Random) -> S + Send + Sync> Draw for StepByStep<F> {
             }
             points.push(here);
         }
-        (points, met)
+        Drawn { points, met, held_back: None }
     }
 }

@@ -12,7 +12,7 @@ use crate::scene::{Scene, read_scene};
 use crate::study::Start;
 use crate::trace::settle;
 
-const STARTS: [Start; 2] = [Start::Anchor, Start::Visible];
+pub(super) const STARTS: [Start; 2] = [Start::Anchor, Start::Visible];
 
 /// Whether two segments have a point in common: each crosses the other's line, or an end of one lies on the other.
 fn meet(s: [DVec2; 2], t: [DVec2; 2]) -> bool {
@@ -33,7 +33,7 @@ fn touches(model: &Model, [a, b]: [DVec2; 2]) -> bool {
 }
 
 /// Scenes with the lengths of steps that suit them. In the last the anchor stands at walls' ends.
-fn scenes() -> Vec<(Arc<Model>, f64)> {
+pub(super) fn scenes() -> Vec<(Arc<Model>, f64)> {
     let built_in = [BuiltIn::Rooms, BuiltIn::Random(150), BuiltIn::Random(1), BuiltIn::Lattice(120)];
     let models = built_in.map(|s| (Arc::new(Model::new(s.scene(3), None).unwrap()), 4.0 * s.step()));
     let walls =
@@ -43,19 +43,31 @@ fn scenes() -> Vec<(Arc<Model>, f64)> {
     models.into_iter().chain([(Arc::new(at_end), 0.5)]).collect()
 }
 
+fn uniform(step: f64, steps: u32, start: Start, at_walls: AtWalls) -> WalkPlan {
+    WalkPlan::Uniform(UniformWalk { step, steps, start, at_walls, tether: None, at_tether: None })
+}
+
+fn gaussian(step: f64, steps: u32, start: Start, at_walls: AtWalls) -> WalkPlan {
+    WalkPlan::Gaussian(GaussianWalk { step, steps, start, at_walls, tether: None, at_tether: None })
+}
+
+fn persistent(step: f64, steps: u32, turn: f64, start: Start, at_walls: AtWalls) -> WalkPlan {
+    WalkPlan::Persistent(PersistentWalk { step, steps, turn, start, at_walls, tether: None, at_tether: None })
+}
+
 /// All kinds of walks with a step of that length.
 fn walks(step: f64, steps: u32, start: Start) -> Vec<WalkPlan> {
     let at = |at_walls| {
         [
-            WalkPlan::Uniform(UniformWalk { step, steps, start, at_walls }),
-            WalkPlan::Gaussian(GaussianWalk { step, steps, start, at_walls }),
-            WalkPlan::Persistent(PersistentWalk { step, steps, turn: 0.4, start, at_walls }),
+            uniform(step, steps, start, at_walls),
+            gaussian(step, steps, start, at_walls),
+            persistent(step, steps, 0.4, start, at_walls),
         ]
     };
     [AtWalls::Redraw, AtWalls::Reject, AtWalls::Reflect].into_iter().flat_map(at).collect()
 }
 
-fn own_points(trace: &SettledTrace) -> Vec<DVec2> {
+pub(super) fn own_points(trace: &SettledTrace) -> Vec<DVec2> {
     (0..trace.points().len()).filter(|&i| trace.ends_step(i)).map(|i| trace.points()[i]).collect()
 }
 
@@ -131,7 +143,7 @@ fn a_trace_is_found_by_its_number_alone() {
 }
 
 /// A square room of that size round the anchor.
-fn square(half: f64) -> Arc<Model> {
+pub(super) fn square(half: f64) -> Arc<Model> {
     let corners = [[-half, -half], [half, -half], [half, half], [-half, half]].map(DVec2::from);
     let scene = Scene::new((0..4).map(|i| [corners[i], corners[(i + 1) % 4]])).unwrap();
     Arc::new(Model::new(scene, Some(DVec2::ZERO)).unwrap())
@@ -166,8 +178,7 @@ fn steps_have_their_length_and_headings_turn_within_their_bounds() {
 
 #[test]
 fn gaussian_steps_have_their_moments() {
-    let plan =
-        WalkPlan::Gaussian(GaussianWalk { step: 0.5, steps: 40_000, start: Start::Anchor, at_walls: AtWalls::Redraw });
+    let plan = gaussian(0.5, 40_000, Start::Anchor, AtWalls::Redraw);
     let points = own_points(&Walks::new(square(1e6), &plan, 1).unwrap().trace(0));
     let n = 40_000f64;
     let steps: Vec<DVec2> = points.windows(2).map(|pair| (pair[1] - pair[0]) / 0.5).collect();
@@ -186,7 +197,7 @@ fn starts_are_uniform_over_what_is_visible() {
     let hiding = [[-1.0, 1.0], [1.0, 1.0]].map(DVec2::from);
     let scene = Scene::new((0..4).map(|i| [corners[i], corners[(i + 1) % 4]]).chain([hiding])).unwrap();
     let model = Arc::new(Model::new(scene, Some(DVec2::ZERO)).unwrap());
-    let plan = WalkPlan::Uniform(UniformWalk { step: 0.1, steps: 1, start: Start::Visible, at_walls: AtWalls::Redraw });
+    let plan = uniform(0.1, 1, Start::Visible, AtWalls::Redraw);
     let walks = Walks::new(model, &plan, 1).unwrap();
     let mut counts = [0; 4];
     for number in 0..4900 {
@@ -205,8 +216,7 @@ fn errors_say_what_would_be_right() {
     let error = |model: Arc<Model>, plan: WalkPlan| {
         Walks::new(model, &plan, 1).err().map(|e| e.to_string()).unwrap_or_default()
     };
-    let uniform =
-        |step, steps| WalkPlan::Uniform(UniformWalk { step, steps, start: Start::Anchor, at_walls: AtWalls::Redraw });
+    let uniform = |step, steps| uniform(step, steps, Start::Anchor, AtWalls::Redraw);
     for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(error(square(1.0), uniform(step, 10)).contains("give a number above 0"), "{step}");
     }
@@ -214,13 +224,7 @@ fn errors_say_what_would_be_right() {
         assert!(error(square(1.0), uniform(0.1, steps)).contains("from 1 to 2147483646"), "{steps}");
     }
     for turn in [-0.1, 3.15, f64::NAN] {
-        let plan = WalkPlan::Persistent(PersistentWalk {
-            step: 0.1,
-            steps: 9,
-            turn,
-            start: Start::Anchor,
-            at_walls: AtWalls::Redraw,
-        });
+        let plan = persistent(0.1, 9, turn, Start::Anchor, AtWalls::Redraw);
         assert!(error(square(1.0), plan).contains("from 0 to pi"), "{turn}");
     }
     let flat = Scene::new([[DVec2::ZERO, DVec2::X]]).unwrap();
@@ -240,18 +244,9 @@ fn traces_are_those_of_other_versions() {
     let model = Arc::new(Model::new(BuiltIn::Rooms.scene(1), None).unwrap());
     let (step, steps, start) = (0.25, 300, Start::Anchor);
     let plans = [
-        (WalkPlan::Uniform(UniformWalk { step, steps, start, at_walls: AtWalls::Redraw }), "535b71366e5512d0"),
-        (WalkPlan::Gaussian(GaussianWalk { step, steps, start, at_walls: AtWalls::Reflect }), "fe6d55280f7cd262"),
-        (
-            WalkPlan::Persistent(PersistentWalk {
-                step,
-                steps,
-                turn: 0.4,
-                start: Start::Visible,
-                at_walls: AtWalls::Reject,
-            }),
-            "190a31891113e557",
-        ),
+        (uniform(step, steps, start, AtWalls::Redraw), "535b71366e5512d0"),
+        (gaussian(step, steps, start, AtWalls::Reflect), "fe6d55280f7cd262"),
+        (persistent(step, steps, 0.4, Start::Visible, AtWalls::Reject), "190a31891113e557"),
         (WalkPlan::Waypoints(WaypointDrive { step, steps, start }), "70d78d68716207ef"),
     ];
     for (plan, known) in plans {
@@ -284,6 +279,7 @@ fn the_page_has_the_constants_of_the_code() {
         ("looks for a mirror", at_walls::MIRRORS.to_string()),
         ("goals drawn in vain", waypoints::TRIES.to_string()),
         ("points drawn in vain", free_space::TRIES.to_string()),
+        ("slides drawn in", leash::DRAWN_IN.to_string()),
     ];
     let start = page.find("| constant | value |").expect("a table of constants");
     let rows: Vec<&str> = page[start..].lines().skip(2).take_while(|line| line.starts_with('|')).collect();
@@ -296,6 +292,7 @@ fn the_page_has_the_constants_of_the_code() {
         format!("Up to {} times", at_walls::MIRRORS),
         format!("{} angles at once", persistent::AHEAD),
         format!("{} blocks at once", random::BLOCKS),
+        format!("after {} times the free end stays", leash::DRAWN_IN),
     ] {
         let found = page.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(found.contains(&phrase), "{phrase}");

@@ -6,7 +6,7 @@ use glam::DVec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::kind::{Basics, Dice, Draw, Kind};
+use super::kind::{Basics, Dice, Draw, Drawn, Kind};
 use super::paths::{Paths, Search};
 use super::room::Room;
 use super::start::{From, Start, TOO_WIDE};
@@ -36,7 +36,7 @@ pub struct WaypointDrive {
 
 impl Kind for WaypointDrive {
     fn basics(&self) -> Basics {
-        Basics { step: self.step, steps: self.steps, start: self.start, at_walls: None }
+        Basics::free(self.step, self.steps, self.start, None)
     }
 
     fn drawer(&self, room: &Room) -> Result<Box<dyn Draw>, PlanError> {
@@ -52,8 +52,9 @@ struct Waypoints {
 }
 
 impl Draw for Waypoints {
-    fn draw(&self, room: &Room, start: From, dice: Dice) -> (Vec<DVec2>, usize) {
-        (self.drive(&room.model, start, &mut dice.of(Purpose::Goal)), 0)
+    fn draw(&self, room: &Room, start: From, dice: Dice) -> Drawn {
+        let points = self.drive(&room.model, start, &mut dice.of(Purpose::Goal));
+        Drawn { points, met: 0, held_back: None }
     }
 
     /// It passes wall ends.

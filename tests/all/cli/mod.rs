@@ -25,6 +25,7 @@ mod steps;
 mod study;
 mod study_shared;
 mod study_sweep;
+mod tether;
 mod traces;
 mod trade;
 mod tradeoff;

@@ -137,6 +137,13 @@ fn real_summaries_are_as_the_schema_says() {
             "{rooms}anchor = [[2.0, 2.0], [3.0, 2.0]]\n[walk]\nkind = \"uniform\"\nstep = 0.3\nsteps = 60\n[run]\ntraces = 30\n"
         ),
     ];
+    let studies = studies.into_iter().chain(["slide", "turn"].map(|at| {
+        format!(
+            "{rooms}[walk]\nkind = \"uniform\"\nstep = 0.5\nsteps = 90\ntether = 4\nat_tether = \"{at}\"\n[run]\n\
+             traces = 90\nblock = 30\n"
+        )
+    }));
+    let studies: Vec<String> = studies.collect();
     let mut seen = BTreeSet::new();
     for (i, study) in studies.iter().enumerate() {
         folder.write("s.toml", format!("{study}[outputs]\npictures = false\n"));
