@@ -8,8 +8,6 @@
 // Points are whole numbers, so their differences are exact; `turn_of` bounds what f32 makes of their products. A sign
 // within its bound is not certain. There the lane stops, and the CPU decides the leg exactly. So what a lane decides is
 // what the exact update decides, on any device whose products and sums are one of the two nearest f32.
-//
-// The twin on the CPU, in f64, is `src/engine/turning.rs`.
 
 // How many contacts a lane knows at most, the last ones.
 const STACK: u32 = 32u;
@@ -57,7 +55,8 @@ struct Lane {
     deeper: u32,
     does: u32,
     events: u32,
-    // The way to the pivot from the contact before, and which way the rope turns when it leaves the pivot: 0 for the anchor.
+    // The way to the pivot from the contact before, and which way the rope turns when it leaves the pivot: 0 for the
+    // anchor.
     way: vec2<f32>,
     back: f32,
     // The square of the greatest distance from the pivot since the last event.
@@ -79,8 +78,8 @@ struct Lane {
 @group(0) @binding(4) var<storage, read_write> lanes: array<Lane>;
 // A trace's contacts: the vertex and the side, the ray of the prior's fan on which it lies, the way there.
 @group(0) @binding(5) var<storage, read_write> stacks: array<vec4<u32>>;
-// A lane's events: the point from which the leg goes, the vertex or UNWRAP, the square of the greatest distance from the
-// pivot before, whether the rope turned clockwise.
+// A lane's events: the point from which the leg goes, the vertex or UNWRAP, the square of the greatest distance from
+// the pivot before, whether the rope turned clockwise.
 @group(0) @binding(6) var<storage, read_write> notes: array<vec4<u32>>;
 
 override WORKGROUP: u32 = 64u;
@@ -263,7 +262,8 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
             if !room || head.y == 0u || (is_wrap && !between) {
                 does = STOPPED;
             } else {
-                notes[id.x * LOG + events] = vec4<u32>(point, vertex, bitcast<u32>(farthest), select(0u, 1u, dir < 0.0));
+                let clockwise = select(0u, 1u, dir < 0.0);
+                notes[id.x * LOG + events] = vec4<u32>(point, vertex, bitcast<u32>(farthest), clockwise);
                 events++;
                 farthest = 0.0;
                 if is_wrap {
@@ -292,5 +292,7 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
     if does == RUNS && dir != 0.0 {
         does = STOPPED;
     }
-    lanes[id.x] = Lane(point, last, pivot, low_number, depth, deeper, does, events, way, back, farthest, number, 0u, 0u, 0u);
+    lanes[id.x] = Lane(
+        point, last, pivot, low_number, depth, deeper, does, events, way, back, farthest, number, 0u, 0u, 0u,
+    );
 }

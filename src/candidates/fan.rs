@@ -19,8 +19,8 @@ const TELLS: f64 = 1.0 / (1u64 << 48) as f64;
 ///
 /// Of vertices on one ray only the nearest is there: where a leg can meet others, it meets that one first.
 ///
-/// A leg that turns about the pivot meets one ray after the other. So the vertices that it can meet next are always two:
-/// those of the rays on both sides of where it points.
+/// A leg that turns about the pivot meets one ray after the other. So the vertices that it can meet next are always
+/// two: those of the rays on both sides of where it points.
 #[derive(Debug)]
 pub struct Fan {
     /// The way to each vertex from the pivot, in the scene's unit.

@@ -60,8 +60,8 @@ impl Grid {
         (0..fan.rays()).map(way).collect()
     }
 
-    /// A length in the scene's unit that is no less than the true distance, from the square of a distance between points
-    /// of the grid that a device computed.
+    /// A length in the scene's unit that is no less than the true distance, from the square of a distance between
+    /// points of the grid that a device computed.
     pub fn at_most(&self, squared: f32) -> f64 {
         // Each point is off by at most 0.71 units, the square by less than 2^-20 of it.
         let units = f64::from(squared).sqrt() * (1.0 + 1.0 / (1 << 19) as f64) + 1.5;

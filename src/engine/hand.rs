@@ -78,8 +78,8 @@ impl<'l> Hand<'l> {
         }
     }
 
-    /// Takes a trace that is not done on by a window of at most `most` legs, or to its first event, and returns how many
-    /// vertices were tried.
+    /// Takes a trace that is not done on by a window of at most `most` legs, or to its first event, and returns how
+    /// many vertices were tried.
     pub(super) fn go_on(&mut self, windows: &mut Windows, trace: &SettledTrace, most: usize, job: &Job) -> usize {
         let lists = self.lists;
         let model = lists.model();

@@ -2,12 +2,11 @@
 
 use std::sync::mpsc;
 
-use bytemuck::{Pod, Zeroable};
 use rayon::prelude::*;
 use wgpu::{BufferUsages, PollType};
 
 use super::buffers::{PATIENCE, binding, buffer};
-use super::lane::{Lane, NOTES, Note, Room, STACK, Stacked};
+use super::lane::{Head, Job, Lane, NOTES, Note, Room, STACK, Stacked};
 use super::pass::HALVES;
 use super::{Device, GpuError};
 
@@ -22,25 +21,6 @@ const POINT: usize = size_of::<[i32; 2]>();
 
 /// How many looks a lane takes in a round at most: a round takes some milliseconds.
 const LOOKS: u32 = 1 << 13;
-
-/// The shader's `Job`.
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-pub(super) struct Job {
-    pub lanes: u32,
-    pub turns: u32,
-    pub looks: u32,
-    pub anchor: u32,
-}
-
-/// Where a pivot's fan lies, and the pivot; the shader's `pivots`.
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-#[repr(C)]
-struct Head {
-    first: u32,
-    rays: u32,
-    place: [i32; 2],
-}
 
 /// Takes traces along on a device, in up to [`HALVES`] rounds at a time.
 pub struct DragPass {
@@ -165,6 +145,11 @@ impl DragPass {
         self.room
     }
 
+    /// Whether any fan lies on the device.
+    pub fn has_fans(&self) -> bool {
+        self.filled > 0
+    }
+
     /// Whether the fan of a pivot, by its index, lies on the device.
     pub fn has_fan(&self, pivot: usize) -> bool {
         self.heads[pivot].rays > 0
@@ -198,8 +183,8 @@ impl DragPass {
     }
 
     /// Brings the points of a half, the first to [`first_point`](Self::first_point), with the next round: a part after
-    /// the other, each as many [`CHUNK`]s as it says. They are written on all threads: `write` is given a part, the number
-    /// of one of its chunks, and the chunk.
+    /// the other, each as many [`CHUNK`]s as it says. They are written on all threads: `write` is given a part, the
+    /// number of one of its chunks, and the chunk.
     ///
     /// # Errors
     ///

@@ -112,8 +112,8 @@ mod tests {
 
     use super::super::arithmetic::Outcome;
     use super::super::buffers::PAGE_BYTES;
-    use super::super::drag::{DRAG_WGSL, Job};
-    use super::super::lane::{DONE, Lane, NOTES, RIGHT, RUNS, STACK, STOPPED, UNWRAPPED};
+    use super::super::drag::DRAG_WGSL;
+    use super::super::lane::{DONE, Job, Lane, NOTES, RIGHT, RUNS, STACK, STOPPED, UNWRAPPED};
     use super::super::pages::PAGE_VERTICES;
     use super::super::pass::Span;
     use super::super::peak::PEAK_WGSL;

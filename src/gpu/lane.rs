@@ -89,3 +89,22 @@ pub struct Room {
     /// How many rays all fans have.
     pub rays: usize,
 }
+
+/// The shader's `Job`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Job {
+    pub lanes: u32,
+    pub turns: u32,
+    pub looks: u32,
+    pub anchor: u32,
+}
+
+/// Where a pivot's fan lies, and the pivot; the shader's `pivots`.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Head {
+    pub first: u32,
+    pub rays: u32,
+    pub place: [i32; 2],
+}

@@ -1,14 +1,14 @@
-//! A trace that is taken along on the device: what comes back of it is written down, and what the device was not certain
-//! of is decided here.
+//! A trace that is taken along on the device: what comes back of it is written down, and what the device was not
+//! certain of is decided here.
 
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use glam::DVec2;
 
-use super::resident::Shared;
-use crate::engine::WINDOW;
+use crate::candidates::{Grid, Lists, Simd};
 use crate::engine::hand::Hand;
 use crate::engine::windows::Windows;
+use crate::engine::{Job, WINDOW};
 use crate::gpu::{CHUNK, DragPass, Lane, Note, RIGHT, STOPPED, Stacked, UNWRAPPED};
 use crate::rope::{Contact, Side, TraceRecord};
 use crate::scene::Pivot;
@@ -19,6 +19,44 @@ const LEGS_OF_DOUBT: usize = 4;
 
 /// How many contacts a trace brings to the device that goes on there. A rope that unwraps more of them stops once.
 const CONTACTS: usize = 8;
+
+/// What all slots share.
+pub(super) struct Shared<'a> {
+    pub lists: &'a Lists,
+    pub grid: &'a Grid,
+    simd: Simd,
+    pub job: &'a Job,
+    traces: &'a [SettledTrace],
+    /// The traces that go to the device.
+    easy: &'a [usize],
+    begun: AtomicUsize,
+    /// Whether the device told what cannot be.
+    pub astray: AtomicBool,
+}
+
+impl<'a> Shared<'a> {
+    /// What slots share that take the traces of the numbers `easy` along.
+    pub(super) fn new(
+        lists: &'a Lists,
+        grid: &'a Grid,
+        job: &'a Job,
+        traces: &'a [SettledTrace],
+        easy: &'a [usize],
+    ) -> Self {
+        let (begun, astray) = (AtomicUsize::new(0), AtomicBool::new(false));
+        Shared { lists, grid, simd: Simd::detected(), job, traces, easy, begun, astray }
+    }
+
+    pub(super) fn hand(&self) -> Hand<'a> {
+        Hand::new(self.lists, WINDOW, self.simd)
+    }
+
+    /// The next trace that nobody has begun.
+    pub(super) fn next(&self) -> Option<(usize, &'a SettledTrace)> {
+        let number = *self.easy.get(self.begun.fetch_add(1, Ordering::Relaxed))?;
+        Some((number, &self.traces[number]))
+    }
+}
 
 /// A place in a half, and the trace in it.
 pub(super) struct Slot<'a> {
@@ -64,8 +102,8 @@ impl<'a> Slot<'a> {
         done
     }
 
-    /// Gives it a piece of its trace of at most `most` legs, at place `first` of the half's points, and returns how many
-    /// chunks these take; nothing if it has no trace.
+    /// Gives it a piece of its trace of at most `most` legs, at place `first` of the half's points, and returns how
+    /// many chunks these take; nothing if it has no trace.
     pub(super) fn take_piece(&mut self, first: usize, most: usize) -> Option<usize> {
         let (_, trace) = self.trace?;
         let from = self.at();

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::deciding::Hasty;
-use super::{GPU, rounds};
+use super::resident::NAME;
+use super::rounds;
 use crate::candidates::{LISTS_BUDGET, Lists};
 use crate::engine::{Engine, EngineError, Job, Precision, WINDOW};
 use crate::gpu::{AdapterSummary, DECIDE_WGSL, Deciding, Device, GpuError, GpuPass, HALVES, Tuning};
@@ -71,7 +72,7 @@ impl FastGpu {
 
 impl Engine for FastGpu {
     fn name(&self) -> &'static str {
-        GPU.name
+        NAME
     }
 
     fn precision(&self) -> Option<Precision> {

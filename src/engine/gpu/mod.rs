@@ -1,6 +1,6 @@
-//! The engines on a device. That of the product, in two precisions: a compute shader [takes traces along](resident), and
-//! the CPU decides what it is not certain of, or it [decides](fast) alone. Two more in which it only finds what the rope
-//! can meet, in a [window](windowed) of steps or in [each](rays), and the CPU decides all.
+//! The engines on a device. That of the product, in two precisions: a compute shader [takes traces along](resident),
+//! and the CPU decides what it is not certain of, or it [decides](fast) alone. Two more in which it only finds what the
+//! rope can meet, in a [window](windowed) of steps or in [each](rays), and the CPU decides all.
 
 mod deciding;
 mod dragged;
@@ -11,6 +11,7 @@ mod resident;
 mod rounds;
 mod windowed;
 
+use self::resident::NAME;
 use super::table::Open;
 use super::{EngineKind, Precision, Promise};
 
@@ -21,7 +22,7 @@ pub use windowed::{GPU_WINDOWS, GpuWindows};
 
 /// The product.
 pub static GPU: EngineKind = EngineKind {
-    name: "gpu",
+    name: NAME,
     about: "A compute shader takes many traces along at once, the CPU decides what it is not certain of",
     precisions: &[Precision::Certified, Precision::Fast],
     asks: true,

@@ -2,11 +2,11 @@
 //! and decides what the shader is not certain of.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
-use super::dragged::Slot;
+use super::dragged::{Shared, Slot};
 use crate::candidates::{Grid, Lists, Simd};
 use crate::engine::hand::Hand;
 use crate::engine::windows::Windows;
@@ -15,6 +15,9 @@ use crate::gpu::{AdapterSummary, CHUNK, DRAG_WGSL, Device, DragPass, GpuError, H
 use crate::rope::TraceRecord;
 use crate::scene::Model;
 use crate::trace::{SettledTrace, bounds};
+
+/// What the engine is called, in either precision.
+pub(super) const NAME: &str = "gpu";
 
 /// How many bytes of points and fans lie on the device at most unless told otherwise.
 const BUDGET: usize = 256 << 20;
@@ -30,6 +33,10 @@ const LOOKS: u32 = 32;
 
 /// The traces of a half go on on the CPU when no more than one in so many is still on its way, or [`FEW`].
 const STRAGGLERS: usize = 512;
+
+/// How many traces of a half go ahead where the device has no fans yet; each time [`MORE`] times as many.
+const AHEAD: usize = 64;
+const MORE: usize = 8;
 
 /// How many traces are not worth a round.
 const FEW: usize = 4;
@@ -96,7 +103,7 @@ impl Gpu {
 
 impl Engine for Gpu {
     fn name(&self) -> &'static str {
-        super::GPU.name
+        NAME
     }
 
     fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, EngineError> {
@@ -116,26 +123,16 @@ impl Engine for Gpu {
             self.make_room(easy.len(), points)?;
         }
         let Gpu { lists, grid, pass, .. } = self;
-        let simd = Simd::detected();
-        let hand = || (Hand::new(lists, WINDOW, simd), Windows::new());
+        let hand = || (Hand::new(lists, WINDOW, Simd::detected()), Windows::new());
         let one = |(hand, windows): &mut (Hand<'_>, Windows), i: usize| {
             Ok::<_, EngineError>((i, hand.evaluate(windows, &traces[i], job)?))
         };
         let done: Result<Vec<_>, EngineError> = hard.into_par_iter().map_init(hand, one).collect();
         done?.into_iter().for_each(|(i, record)| records[i] = Some(record));
         if let Some(pass) = pass.as_mut().filter(|_| !easy.is_empty()) {
-            let shared = Shared {
-                lists,
-                grid,
-                simd,
-                job,
-                traces,
-                easy: &easy,
-                begun: AtomicUsize::new(0),
-                astray: AtomicBool::new(false),
-            };
+            let shared = Shared::new(lists, grid, job, traces, &easy);
             let lanes = pass.room().lanes.min(easy.len().div_ceil(HALVES));
-            let mut halves: [Half<'_>; HALVES] = std::array::from_fn(|_| Half::new(lanes));
+            let mut halves: [Half<'_>; HALVES] = std::array::from_fn(|_| Half::new(lanes, pass.has_fans()));
             let played = play(pass, &shared, &mut halves, &mut records);
             // Rounds that are still on their way after an early end: so that the next evaluation finds the device free.
             for half in 0..HALVES {
@@ -157,32 +154,6 @@ impl Engine for Gpu {
     fn forget(&mut self) {
         self.lists.forget();
         self.pass.iter_mut().for_each(DragPass::forget);
-    }
-}
-
-/// What all slots share.
-pub(super) struct Shared<'a> {
-    pub lists: &'a Lists,
-    pub grid: &'a Grid,
-    pub simd: Simd,
-    pub job: &'a Job,
-    pub traces: &'a [SettledTrace],
-    /// The traces that go to the device.
-    easy: &'a [usize],
-    begun: AtomicUsize,
-    /// Whether the device told what cannot be.
-    pub astray: AtomicBool,
-}
-
-impl<'a> Shared<'a> {
-    pub(super) fn hand(&self) -> Hand<'a> {
-        Hand::new(self.lists, WINDOW, self.simd)
-    }
-
-    /// The next trace that nobody has begun.
-    pub(super) fn next(&self) -> Option<(usize, &'a SettledTrace)> {
-        let number = *self.easy.get(self.begun.fetch_add(1, Ordering::Relaxed))?;
-        Some((number, &self.traces[number]))
     }
 }
 
@@ -223,12 +194,18 @@ struct Half<'a> {
     active: Vec<usize>,
     /// How many there were when the half was filled.
     filled: usize,
+    /// How many slots are filled the next time.
+    next: usize,
     lanes: Vec<Lane>,
 }
 
 impl<'a> Half<'a> {
-    fn new(slots: usize) -> Self {
-        Half { slots: (0..slots).map(|_| Slot::new()).collect(), active: Vec::new(), filled: 0, lanes: Vec::new() }
+    /// A half with so many slots. Where the device has no fans yet, a few traces go ahead and have them made: each
+    /// stops at every pivot that is new.
+    fn new(slots: usize, has_fans: bool) -> Self {
+        let next = if has_fans { slots } else { AHEAD };
+        let slots = (0..slots).map(|_| Slot::new()).collect();
+        Half { slots, active: Vec::new(), filled: 0, next, lanes: Vec::new() }
     }
 
     /// Takes the traces that were on the device as far as it took them, and those that it was not certain of a bit
@@ -265,12 +242,12 @@ impl<'a> Half<'a> {
         shared: &Shared<'a>,
         records: &mut [Option<TraceRecord>],
     ) -> Result<bool, GpuError> {
-        let Half { slots, active, filled, .. } = self;
+        let Half { slots, active, filled, next, .. } = self;
         let most = PIECE.min(pass.room().points - 1);
         let mut taken = 0;
         let mut with_piece = Vec::with_capacity(slots.len());
         let mut any = false;
-        for (i, slot) in slots.iter_mut().enumerate() {
+        for (i, slot) in slots.iter_mut().enumerate().take(*next) {
             if let Some((done, record)) = slot.next_trace(shared) {
                 records[done] = Some(record);
             }
@@ -298,6 +275,7 @@ impl<'a> Half<'a> {
         *active = with_piece;
         active.retain(|&slot| slots[slot].is_on_its_way());
         *filled = active.len();
+        *next = next.saturating_mul(MORE);
         Ok(any)
     }
 
