@@ -153,10 +153,10 @@ def test_a_sweep_goes_on(answer: SweepAnswer, program: Program, tmp_path: Path) 
         Answer(tmp_path / "out")
     # The program and the package go on with what the other began.
     with pytest.raises(KeyboardInterrupt):
-        Study({**PLAN, "run": {"traces": 2000, "block": 50}}).run(tmp_path / "small", progress=lambda *_: stop(1, 1))
+        Study(plan).run(tmp_path / "small", progress=lambda *_: stop(1, 1))
     program("study", "resume", tmp_path / "small", "--engine", "cpu")
     resumed = Study.resume(tmp_path / "small", progress=False)
-    assert isinstance(resumed, SweepAnswer) and all(point.summary["traces"] == 2000 for point in resumed)
+    assert isinstance(resumed, SweepAnswer) and all(point.summary["traces"] == 20_000 for point in resumed)
     again = Sweep(PLAN).run(answer.folder, progress=False)
     assert again.summary == answer.summary
 

@@ -89,8 +89,8 @@ impl TraceReader {
         if self.moves_anchor()? {
             self.ended = true;
             self.gatherer = Gatherer::default();
-            let what = "it has columns bx and by, so the rope's anchor moves, and only eval and draw take such traces; \
-                        leave these columns out for a rope that is tied";
+            let what = "it has columns bx and by, so the rope's anchor moves, and only eval and draw take such traces, \
+                        as --traces; leave these columns out for a rope that is tied, or for the way of anchors";
             return Err(Fault::new(Place::default(), what).in_file(&self.path));
         }
         Ok(self.gatherer.take(traces, points, self.ended))

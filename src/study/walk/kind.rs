@@ -6,7 +6,7 @@ use super::at_walls::AtWalls;
 use super::room::Room;
 use super::start::{From, Start};
 use super::tether::{AtTether, Tether};
-use crate::geometry::{check_point, number};
+use crate::geometry::{COORDINATE_MAX, COORDINATE_MIN, check_point, number};
 use crate::study::plan_error::PlanError;
 use crate::study::random::{Purpose, Random};
 use crate::trace::HeldBack;
@@ -79,8 +79,8 @@ impl dyn Kind + '_ {
         match (tether, at_tether) {
             (Some(length), _) if !(length > 0.0 && check_point(DVec2::new(length, 0.0)).is_ok()) => {
                 return Err(PlanError::new(format!(
-                    "walk.tether: {} is no length of a tether; give a number above 0, in the scene's unit, or leave it \
-                     out",
+                    "walk.tether: {} is no length of a tether; give a number above 0 (from {COORDINATE_MIN:.2e} to \
+                     {COORDINATE_MAX:.2e}), in the scene's unit, or leave it out",
                     number(length)
                 )));
             }
