@@ -64,7 +64,7 @@ pub enum EndsFault {
 }
 
 /// Checks the paths of both ends of a rope against the walls of `model`, and settles on which side each passes the
-/// walls that it touches, as [`settle`] does. `free` is the trace of the free end, `anchor` has the points of the
+/// walls that it touches, as [`settle()`] does. `free` is the trace of the free end, `anchor` has the points of the
 /// anchor; where the model's rope is tied is of no matter.
 ///
 /// O(points + walls near them), through the model's index.
@@ -76,7 +76,7 @@ pub enum EndsFault {
 ///
 /// # Panics
 ///
-/// Where [`settle`] does, about `free`.
+/// Where [`settle()`] does, about `free`.
 ///
 /// ```
 /// use tautline::scene::{Model, Scene};
