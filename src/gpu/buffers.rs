@@ -1,5 +1,6 @@
 //! Buffers of the device, and how long it is waited for.
 
+use std::sync::mpsc;
 use std::time::Duration;
 
 use wgpu::BufferUsages;
@@ -28,4 +29,17 @@ pub(super) fn binding(
         ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None },
         count: None,
     }
+}
+
+/// What is told once a buffer is mapped.
+pub(super) type Mapped = mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>;
+
+/// Maps the first `bytes` of a buffer once what is encoded is done.
+pub(super) fn mapped(encoder: &wgpu::CommandEncoder, buffer: &wgpu::Buffer, mode: wgpu::MapMode, bytes: u64) -> Mapped {
+    let (sender, mapped) = mpsc::sync_channel(1);
+    encoder.map_buffer_on_submit(buffer, mode, 0..bytes, move |result| {
+        // The receiver is gone only if waiting failed, which is reported there.
+        let _ = sender.send(result);
+    });
+    mapped
 }

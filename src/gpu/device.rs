@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use super::adapter::{AdapterChoice, AdapterSummary, enumerate};
 use super::arithmetic::Arithmetic;
-use super::buffers::PAGE_BYTES;
+use super::buffers::{PAGE_BYTES, PATIENCE};
 use super::{GpuError, Tuning, drivers};
 
 struct Complaint {
@@ -91,6 +91,18 @@ impl Device {
             None => Ok(()),
             Some(Complaint { words, lost: true }) => Err(self.failed(words)),
             Some(_) => Err(self.failed(complaint.take().map_or(String::new(), |c| c.words))),
+        }
+    }
+
+    /// Waits until a submission is done: an error if the device does not answer, or has complained.
+    pub(super) fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<(), GpuError> {
+        let wait = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(PATIENCE) };
+        match self.device.poll(wait) {
+            Ok(_) => self.check(),
+            Err(wgpu::PollError::Timeout) => {
+                Err(GpuError::Timeout { adapter: self.summary.name.clone(), seconds: PATIENCE.as_secs() })
+            }
+            Err(other) => Err(self.failed(other)),
         }
     }
 

@@ -1,11 +1,9 @@
 //! The kernel that takes traces along, `shaders/drag.wgsl`: its buffers, and its round trips.
 
-use std::sync::mpsc;
-
 use rayon::prelude::*;
 use wgpu::{BufferUsages, PollType};
 
-use super::buffers::{PATIENCE, binding, buffer};
+use super::buffers::{Mapped, binding, buffer, mapped};
 use super::lane::{Head, Job, Lane, NOTES, Note, Room, STACK, Stacked};
 use super::pass::HALVES;
 use super::{Device, GpuError};
@@ -19,8 +17,11 @@ pub const CHUNK: usize = 64;
 /// The size of a point, in bytes.
 const POINT: usize = size_of::<[i32; 2]>();
 
+/// After how many looks of a lane events are seen to: lanes that have met one wait for the others.
+const LOOKS: u32 = 32;
+
 /// How many looks a lane takes in a round at most: a round takes some milliseconds.
-const LOOKS: u32 = 1 << 13;
+const MOST_LOOKS: u32 = 1 << 13;
 
 /// Takes traces along on a device, in up to [`HALVES`] rounds at a time.
 pub struct DragPass {
@@ -51,7 +52,7 @@ struct Half {
     upload: wgpu::Buffer,
     /// How many bytes of it are to be copied.
     written: u64,
-    mapping: Option<mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>>,
+    mapping: Option<Mapped>,
     bindings: wgpu::BindGroup,
     sent: Option<Sent>,
 }
@@ -60,8 +61,8 @@ struct Sent {
     submission: wgpu::SubmissionIndex,
     /// How many bytes of lanes and of notes come back.
     bytes: [u64; 2],
-    lanes: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
-    notes: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+    lanes: Mapped,
+    notes: Mapped,
 }
 
 impl DragPass {
@@ -234,12 +235,12 @@ impl DragPass {
         }
     }
 
-    /// Sends a round, in which events are seen to after every so many `looks`, at least 1.
+    /// Sends a round.
     ///
     /// # Panics
     ///
     /// If there are more lanes than a half has, or if the half's last round was not collected.
-    pub fn send(&mut self, half: usize, lanes: &[Lane], looks: u32) {
+    pub fn send(&mut self, half: usize, lanes: &[Lane]) {
         assert!(lanes.len() <= self.room.lanes, "a half takes what it has room for");
         let Device { device, queue, .. } = &self.device;
         if !self.new_ways.is_empty() {
@@ -261,7 +262,7 @@ impl DragPass {
             return;
         }
         let (count, anchor) = (lanes.len() as u32, self.heads.len() as u32 - 1);
-        let with = Job { lanes: count, turns: LOOKS / looks.max(1), looks, anchor };
+        let with = Job { lanes: count, turns: MOST_LOOKS / LOOKS, looks: LOOKS, anchor };
         queue.write_buffer(job, 0, bytemuck::bytes_of(&with));
         queue.write_buffer(buffer, 0, bytemuck::cast_slice(lanes));
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("drag") });
@@ -293,14 +294,7 @@ impl DragPass {
     /// What the device complains of, or that it does not answer.
     pub fn wait(&self, half: usize) -> Result<(), GpuError> {
         let Some(sent) = &self.halves[half].sent else { return Ok(()) };
-        let wait = PollType::Wait { submission_index: Some(sent.submission.clone()), timeout: Some(PATIENCE) };
-        match self.device.device.poll(wait) {
-            Ok(_) => self.device.check(),
-            Err(wgpu::PollError::Timeout) => {
-                Err(GpuError::Timeout { adapter: self.device.summary().name.clone(), seconds: PATIENCE.as_secs() })
-            }
-            Err(other) => Err(self.device.failed(other)),
-        }
+        self.device.wait(&sent.submission)
     }
 
     /// Waits for the half's round, if there is one, and gives its lanes and their notes, [`NOTES`] a lane, to `read`.
@@ -326,21 +320,6 @@ impl DragPass {
         notes_back.unmap();
         done
     }
-}
-
-/// Maps a buffer once what is encoded is done.
-fn mapped(
-    encoder: &wgpu::CommandEncoder,
-    buffer: &wgpu::Buffer,
-    mode: wgpu::MapMode,
-    bytes: u64,
-) -> mpsc::Receiver<Result<(), wgpu::BufferAsyncError>> {
-    let (sender, mapped) = mpsc::sync_channel(1);
-    encoder.map_buffer_on_submit(buffer, mode, 0..bytes, move |result| {
-        // The receiver is gone only if waiting failed, which is reported there.
-        let _ = sender.send(result);
-    });
-    mapped
 }
 
 impl Half {

@@ -1,11 +1,9 @@
 //! Kernels that are run by themselves, from one buffer into another: those that find out what a device is like.
 
-use std::sync::mpsc;
-
 use bytemuck::Pod;
-use wgpu::{BufferUsages, PollType};
+use wgpu::BufferUsages;
 
-use super::buffers::{PATIENCE, binding, buffer};
+use super::buffers::{binding, buffer, mapped};
 use super::{Device, GpuError};
 
 /// A kernel with its buffers: the first binding is what goes in, the second what comes out.
@@ -78,14 +76,9 @@ impl<'d> Once<'d> {
             pass.dispatch_workgroups(workgroups, 1, 1);
         }
         encoder.copy_buffer_to_buffer(&self.results, 0, readback, 0, readback.size());
-        let (sender, mapped) = mpsc::sync_channel(1);
-        encoder.map_buffer_on_submit(readback, wgpu::MapMode::Read, .., move |result| {
-            let _ = sender.send(result);
-        });
+        let mapped = mapped(&encoder, readback, wgpu::MapMode::Read, readback.size());
         let submission = queue.submit([encoder.finish()]);
-        let wait = PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
-        device.poll(wait).map_err(|e| opened.failed(e))?;
-        opened.check()?;
+        opened.wait(&submission)?;
         mapped.recv().map_err(|e| opened.failed(e))?.map_err(|e| opened.failed(e))?;
         let view = readback.get_mapped_range(..).map_err(|e| opened.failed(e))?;
         let results = bytemuck::pod_collect_to_vec(&view[..]);

@@ -2,12 +2,11 @@
 
 use std::marker::PhantomData;
 use std::ops::Range;
-use std::sync::mpsc;
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::{BufferUsages, PollType};
+use wgpu::BufferUsages;
 
-use super::buffers::{PATIENCE, binding, buffer};
+use super::buffers::{Mapped, binding, buffer, mapped};
 use super::kernel::{Kernel, Sweeping};
 use super::pages::{Pages, pages_of};
 use super::{Device, GpuError, Tuning};
@@ -62,7 +61,7 @@ struct Half {
 /// A round that is on its way.
 struct Sent {
     submission: wgpu::SubmissionIndex,
-    mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+    mapped: Mapped,
 }
 
 impl<K: Kernel> GpuPass<K> {
@@ -205,11 +204,7 @@ impl<K: Kernel> GpuPass<K> {
         }
         let bytes = (queries.len() * size_of::<K::Found>()) as u64;
         encoder.copy_buffer_to_buffer(&buffers.found, 0, &buffers.readback, 0, bytes);
-        let (sender, mapped) = mpsc::sync_channel(1);
-        encoder.map_buffer_on_submit(&buffers.readback, wgpu::MapMode::Read, 0..bytes, move |result| {
-            // The receiver is gone only if waiting failed, which is reported there.
-            let _ = sender.send(result);
-        });
+        let mapped = mapped(&encoder, &buffers.readback, wgpu::MapMode::Read, bytes);
         let submission = queue.submit([encoder.finish()]);
         self.halves[half].sent = Some(Sent { submission, mapped });
     }
@@ -221,14 +216,7 @@ impl<K: Kernel> GpuPass<K> {
     /// What the device complains of, or that it does not answer.
     pub fn wait(&self, half: usize) -> Result<(), GpuError> {
         let Some(sent) = &self.halves[half].sent else { return Ok(()) };
-        let wait = PollType::Wait { submission_index: Some(sent.submission.clone()), timeout: Some(PATIENCE) };
-        match self.device.device.poll(wait) {
-            Ok(_) => self.device.check(),
-            Err(wgpu::PollError::Timeout) => {
-                Err(GpuError::Timeout { adapter: self.device.summary().name.clone(), seconds: PATIENCE.as_secs() })
-            }
-            Err(other) => Err(self.device.failed(other)),
-        }
+        self.device.wait(&sent.submission)
     }
 
     /// Waits for the half's round and copies what its queries found, in their order, into `found`, which is as long.

@@ -28,9 +28,6 @@ const RAYS: usize = 256;
 /// How many legs of a trace are brought at a time at most.
 const PIECE: usize = 1 << 12;
 
-/// After how many looks of a lane events are seen to: lanes that have met one wait for the others.
-const LOOKS: u32 = 32;
-
 /// The traces of a half go on on the CPU when no more than one in so many is still on its way, or [`FEW`].
 const STRAGGLERS: usize = 512;
 
@@ -227,8 +224,7 @@ impl<'a> Half<'a> {
         })?;
         active.retain(|&slot| slots[slot].is_on_its_way());
         if active.len() <= (*filled / STRAGGLERS).max(FEW) {
-            let mut left = chosen(slots, active);
-            left.par_iter_mut().for_each_init(|| shared.hand(), |hand, slot| slot.finish_piece(hand, shared));
+            finish_pieces(slots, active, shared);
             active.clear();
         }
         Ok(())
@@ -290,8 +286,7 @@ impl<'a> Half<'a> {
                 bring(pass, slots);
             }
             let (on, off): (Vec<usize>, Vec<usize>) = active.iter().partition(|&&i| pass.has_fan(slots[i].pivot()));
-            let mut left = chosen(slots, &off);
-            left.par_iter_mut().for_each_init(|| shared.hand(), |hand, slot| slot.finish_piece(hand, shared));
+            finish_pieces(slots, &off, shared);
             *active = on;
             lanes.clear();
             let first = pass.first_point(number);
@@ -299,9 +294,15 @@ impl<'a> Half<'a> {
                 lanes.push(slots[i].lane(first, i));
                 pass.bring_stack(number, i, &slots[i].take_stack());
             }
-            pass.send(number, lanes, LOOKS);
+            pass.send(number, lanes);
         });
     }
+}
+
+/// Takes the traces of these slots to the end of their pieces, on the CPU.
+fn finish_pieces<'a>(slots: &mut [Slot<'a>], numbers: &[usize], shared: &Shared<'a>) {
+    let mut left = chosen(slots, numbers);
+    left.par_iter_mut().for_each_init(|| shared.hand(), |hand, slot| slot.finish_piece(hand, shared));
 }
 
 /// The items of these numbers, which increase.
