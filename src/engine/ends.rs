@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::job::TELL;
 use super::progress::Progress;
 use super::{EngineError, Job};
 use crate::candidates::Lists;
@@ -9,9 +10,6 @@ use crate::geometry::{TracePoint, higher, lower};
 use crate::rope::{EndsRecord, Event, EventKind, FreeRope, Side, Status, Sweep, TraceRecord};
 use crate::scene::{Model, Pivot};
 use crate::trace::{End, SettledEnds};
-
-/// After how many steps of a trace the job is told of them, so that the threads do not fight for its counter.
-const TELL: usize = 1 << 12;
 
 /// What the leg of an end turns about: a vertex, or no vertex but the other end, and where that is.
 pub(super) type About = (Option<u32>, DVec2);

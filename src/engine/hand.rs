@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::job::TELL;
 use super::windows::Windows;
 use super::{EngineError, Job, Phase};
 use crate::candidates::{List, Lists, ROOM, Simd, Slopes};
@@ -9,9 +10,6 @@ use crate::rope::TraceRecord;
 use crate::scene::Pivot;
 use crate::trace::SettledTrace;
 use crate::visibility::Scratch;
-
-/// After how many steps of a trace the job is told of them, so that the threads do not fight for its counter.
-const TELL: usize = 1 << 12;
 
 /// How many lists each thread keeps at hand.
 const RECENT: usize = 256;
@@ -25,9 +23,7 @@ pub(super) struct Hand<'l> {
     scratch: Scratch,
     /// The candidates of the current window.
     found: Vec<u32>,
-    /// The lists used last, by pivot: ropes come back to the pivots from which they came, and what a thread has at hand
-    /// it need not ask the others for.
-    recent: [Option<(Pivot, Arc<List>)>; RECENT],
+    recent: Recent,
 }
 
 impl<'l> Hand<'l> {
@@ -39,7 +35,7 @@ impl<'l> Hand<'l> {
             slopes: Slopes::default(),
             scratch: Scratch::default(),
             found: Vec::new(),
-            recent: std::array::from_fn(|_| None),
+            recent: Recent(std::array::from_fn(|_| None)),
         }
     }
 
@@ -51,17 +47,7 @@ impl<'l> Hand<'l> {
         job: &Job,
     ) -> Result<TraceRecord, EngineError> {
         windows.start(self.lists.model(), trace);
-        self.finish(windows, trace, job)
-    }
-
-    /// Evaluates a trace from where it stands to its end.
-    pub(super) fn finish(
-        &mut self,
-        windows: &mut Windows,
-        trace: &SettledTrace,
-        job: &Job,
-    ) -> Result<TraceRecord, EngineError> {
-        let (mut told, mut tests) = (trace.step(windows.at()), 0);
+        let (mut told, mut tests) = (0, 0);
         loop {
             if let Some(record) = windows.finished(trace) {
                 job.count(trace.step(windows.at()) - told);
@@ -92,12 +78,11 @@ impl<'l> Hand<'l> {
         }
         let pivot = windows.pivot(model);
         let squared = windows.squared(trace);
-        self.list(pivot, squared, job);
         let Hand { simd, slopes, scratch, found, recent, .. } = self;
+        let list = recent.list(lists, pivot, squared, job);
         found.clear();
-        let serves = |(of, list): &&(Pivot, Arc<List>)| *of == pivot && list.reaches(squared);
-        let tests = job.time(Phase::Kernel, || match recent[pivot.index() % RECENT].as_ref().filter(serves) {
-            Some((_, list)) => {
+        let tests = job.time(Phase::Kernel, || match list {
+            Some(list) => {
                 let count = list.within(squared);
                 simd.sweep(list, &query, count, found);
                 count
@@ -113,14 +98,25 @@ impl<'l> Hand<'l> {
 
     /// The list of a pivot that serves queries no further from it than the square root of `squared`, once it is worth
     /// making.
-    pub(super) fn list(&mut self, pivot: Pivot, squared: f64, job: &Job) -> Option<&Arc<List>> {
+    pub(super) fn list(&mut self, pivot: Pivot, squared: f64, job: &Job) -> Option<&List> {
+        self.recent.list(self.lists, pivot, squared, job)
+    }
+}
+
+/// The lists used last, by pivot: ropes come back to the pivots from which they came, and what a thread has at hand it
+/// need not ask the others for.
+struct Recent([Option<(Pivot, Arc<List>)>; RECENT]);
+
+impl Recent {
+    /// As [`Hand::list`], of `lists`.
+    fn list(&mut self, lists: &Lists, pivot: Pivot, squared: f64, job: &Job) -> Option<&List> {
         let serves = |(of, list): &&(Pivot, Arc<List>)| *of == pivot && list.reaches(squared);
-        let slot = &mut self.recent[pivot.index() % RECENT];
+        let slot = &mut self.0[pivot.index() % RECENT];
         if slot.as_ref().filter(serves).is_none()
-            && let Some(own) = job.time(Phase::Queries, || self.lists.of(pivot, squared))
+            && let Some(own) = job.time(Phase::Queries, || lists.of(pivot, squared))
         {
             *slot = Some((pivot, own));
         }
-        slot.as_ref().filter(serves).map(|(_, list)| list)
+        slot.as_ref().filter(serves).map(|(_, list)| &**list)
     }
 }

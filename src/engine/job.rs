@@ -36,6 +36,9 @@ impl Phase {
     }
 }
 
+/// After how many steps of a trace the job is told of them, so that the threads do not fight for its counter.
+pub(super) const TELL: usize = 1 << 12;
+
 /// A running evaluation as seen from outside.
 #[derive(Debug, Default)]
 pub struct Job {

@@ -100,14 +100,10 @@ impl LiveRope {
     /// Nothing has happened then.
     pub fn advance(&mut self, to: DVec2) -> Result<&[LiveEvent], AdvanceError> {
         let (model, from) = (self.lists.model(), self.at);
-        check_point(to).map_err(|fault| AdvanceError::Coordinate { to, fault })?;
+        check_move(model, from, to)?;
         self.events.clear();
         if to == from {
             return Ok(&self.events);
-        }
-        if let Some(wall) = model.touched(from, to) {
-            let wall = wall as usize;
-            return Err(AdvanceError::Touches { wall, ends: model.scene().ends(wall), from, to });
         }
         let leg = Leg { a0: leaves(model, from, to), a1: TracePoint::from(to) };
         let events = &mut self.events;
@@ -134,5 +130,23 @@ impl LiveRope {
     /// The unit vector along which the rope pulls the free end; `None` for a rope of no length. O(1).
     pub fn pull(&self) -> Option<DVec2> {
         self.rope.pull(self.free_end())
+    }
+}
+
+/// Whether an end may move straight from `from` to `to`; it may always stay.
+pub(super) fn check_move(model: &Model, from: DVec2, to: DVec2) -> Result<(), AdvanceError> {
+    check_point(to).map_err(|fault| AdvanceError::Coordinate { to, fault })?;
+    if from != to
+        && let Some(wall) = model.touched(from, to)
+    {
+        return Err(AdvanceError::touches(model, wall, from, to));
+    }
+    Ok(())
+}
+
+impl AdvanceError {
+    pub(super) fn touches(model: &Model, wall: u32, from: DVec2, to: DVec2) -> Self {
+        let wall = wall as usize;
+        AdvanceError::Touches { wall, ends: model.scene().ends(wall), from, to }
     }
 }

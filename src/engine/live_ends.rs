@@ -5,9 +5,10 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use super::ends::{About, drag, listed};
+use super::live::check_move;
 use super::{AdvanceError, LiveEvent};
 use crate::candidates::Lists;
-use crate::geometry::{TracePoint, check_point};
+use crate::geometry::TracePoint;
 use crate::rope::FreeRope;
 use crate::scene::Model;
 use crate::trace::End;
@@ -51,8 +52,7 @@ impl LiveEnds {
     pub fn new(model: Arc<Model>) -> Result<Self, AdvanceError> {
         let at = model.anchor();
         if let Some(wall) = model.wall_at(at) {
-            let wall = wall as usize;
-            return Err(AdvanceError::Touches { wall, ends: model.scene().ends(wall), from: at, to: at });
+            return Err(AdvanceError::touches(&model, wall, at, at));
         }
         let lists = Lists::new(model).after(0).anywhere();
         // Made now rather than in the first move.
@@ -71,12 +71,7 @@ impl LiveEnds {
     /// [`AdvanceError`]: a move that touches a wall, and a coordinate that is not finite, too large or too small.
     /// Nothing has happened then.
     pub fn advance(&mut self, end: End, to: DVec2) -> Result<&[LiveEvent], AdvanceError> {
-        let (model, from) = (self.lists.model(), self.at(end));
-        check_point(to).map_err(|fault| AdvanceError::Coordinate { to, fault })?;
-        if let Some(wall) = model.touched(from, to).filter(|_| from != to) {
-            let wall = wall as usize;
-            return Err(AdvanceError::Touches { wall, ends: model.scene().ends(wall), from, to });
-        }
+        check_move(self.lists.model(), self.at(end), to)?;
         self.events.clear();
         let LiveEnds { lists, rope, events, tried } = self;
         let mut find = |about: About, leg: [DVec2; 2], tried: &mut Vec<u32>| listed(lists, about, leg, tried);

@@ -96,20 +96,16 @@ impl Progress {
     /// rope turns by `dir`. `None` if the leg has had all wraps that it can have.
     pub(super) fn wrap(&mut self, trace: &SettledTrace, vertex: u32, at: DVec2, dir: f64) -> Option<()> {
         self.wraps_left = self.wraps_left.checked_sub(1)?;
-        let (o, side) = (self.rope.pivot(), Side::of(dir));
-        self.rope.push(vertex, at, side);
-        self.sweep = Sweep::After { dir, x: o, y: at, wrapped: true };
+        let side = self.sweep.wrap(&mut self.rope, vertex, at, dir);
         self.note(trace, EventKind::Wrap, vertex, side);
         Some(())
     }
 
     /// Unwraps the rope from its pivot: as [`wrap`](Self::wrap). `None` if it has none, or cannot turn that way there.
     pub(super) fn unwrap(&mut self, trace: &SettledTrace, dir: f64) -> Option<()> {
-        let (x, y) = (self.rope.prior(), self.rope.pivot());
         self.rope.contacts().last().filter(|c| c.side != Side::of(dir))?;
-        let left = self.rope.pop()?;
-        self.sweep = Sweep::After { dir, x, y, wrapped: false };
-        self.note(trace, EventKind::Unwrap, left.vertex, left.side);
+        let (vertex, side) = self.sweep.unwrap(&mut self.rope, dir)?;
+        self.note(trace, EventKind::Unwrap, vertex, side);
         Some(())
     }
 

@@ -83,18 +83,32 @@ impl<P: Resting> Sweep<P> {
         match (first, unwrap) {
             (None, None) => None,
             (Some(c), unwrap) if unwrap.is_none_or(|dir| x.orient(o.at(), c.at) * dir <= 0.0) => {
-                let side = Side::of(c.dir);
-                rope.push(c.vertex, c.at, side);
-                *self = Sweep::After { dir: c.dir, x: o, y: c.at, wrapped: true };
-                Some((EventKind::Wrap, c.vertex, side))
+                Some((EventKind::Wrap, c.vertex, self.wrap(rope, c.vertex, c.at, c.dir)))
             }
             (_, Some(dir)) => {
-                let (vertex, side) = rope.pop()?;
-                *self = Sweep::After { dir, x, y: o.at(), wrapped: false };
+                let (vertex, side) = self.unwrap(rope, dir)?;
                 Some((EventKind::Unwrap, vertex, side))
             }
             (Some(_), None) => unreachable!("a crossing without an unwrap is a wrap"),
         }
+    }
+
+    /// Wraps `rope` round the vertex at `at`, in which it turns by `dir`, and returns on which side that lies.
+    #[inline]
+    pub(crate) fn wrap<S: Strand<Pivot = P>>(&mut self, rope: &mut S, vertex: u32, at: DVec2, dir: f64) -> Side {
+        let side = Side::of(dir);
+        *self = Sweep::After { dir, x: rope.pivot(), y: at, wrapped: true };
+        rope.push(vertex, at, side);
+        side
+    }
+
+    /// Unwraps `rope` from its pivot, in which it turns by `dir`, and returns that and its side; `None` if it has none.
+    #[inline]
+    pub(crate) fn unwrap<S: Strand<Pivot = P>>(&mut self, rope: &mut S, dir: f64) -> Option<(u32, Side)> {
+        let (x, y) = (rope.prior(), rope.pivot().at());
+        let left = rope.pop()?;
+        *self = Sweep::After { dir, x, y, wrapped: false };
+        Some(left)
     }
 
     /// The way in which the rope turns across the ray of the vertex at `p` from pivot `o`, if it still will.
