@@ -2,12 +2,14 @@
 
 use std::path::Path;
 use std::process;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use pyo3::prelude::*;
 use tautline::engine::Engine;
 use tautline::output::write_whole;
-use tautline::session::{Computed, Session};
+use tautline::session::{Computed, Folder, Session};
+use tautline::study::{Shard, Study};
 
 use crate::compute::{self, Work};
 use crate::fault::Fault;
@@ -105,6 +107,14 @@ pub(crate) fn through(
     let watch = |py: Python<'_>, work: &Work| told.tell(py, work.job.steps(), left.steps);
     compute::run(py, run, watch)?;
     Ok(session.folder().notes().iter().map(ToString::to_string).collect())
+}
+
+/// Begins a study in the folder `out`, or goes on with what is there of it; its files are named from `base`. What was
+/// made for nothing is taken back.
+pub(crate) fn begin(out: &Path, study: Arc<Study>, base: &Path) -> Result<Session, Fault> {
+    let folder = Arc::new(Folder::make(out)?);
+    let begun = Session::begin(folder.clone(), study, base, Shard::WHOLE);
+    Ok(begun.inspect_err(|_| folder.take_back())?)
 }
 
 /// Writes a scene's text to a study's folder, whole or not at all.

@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::{RecordBatch, RecordBatchReader};
 use arrow_schema::{ArrowError, SchemaRef};
 use pyo3::prelude::*;
@@ -14,7 +13,7 @@ use tautline::scene::Centre;
 
 use crate::compute;
 use crate::ropes::Kept;
-use crate::table::Table;
+use crate::table::{Table, capsule};
 
 /// How many steps are made at once, about: enough for all threads.
 const STEPS: usize = 1 << 18;
@@ -57,8 +56,7 @@ impl StepStream {
         let _ = requested_schema;
         let of = StepStream { of: self.of.clone(), centres: self.centres.clone() };
         let (schema, pool) = (self.rows(0..0).0, compute::pool(py)?);
-        let stream = FFI_ArrowArrayStream::new(Box::new(Reader { of, schema, pool, place: 0, ready: Vec::new() }));
-        PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
+        capsule(py, Reader { of, schema, pool, place: 0, ready: Vec::new() })
     }
 
     /// The rows of the next traces from place `first` on, and the place behind them; none at the end.

@@ -83,10 +83,8 @@ impl Study {
         scene: Option<&str>,
     ) -> PyResult<Vec<String>> {
         let begin = |_: &Work| {
-            let folder = Arc::new(Folder::make(&out)?);
             let base = if scene.is_some() { &out } else { &self.base };
-            let begun = Session::begin(folder.clone(), self.study.clone(), base, Shard::WHOLE);
-            let begun = begun.inspect_err(|_| folder.take_back())?;
+            let begun = going::begin(&out, self.study.clone(), base)?;
             if let Some(text) = scene {
                 write_scene(&out, text)?;
             }

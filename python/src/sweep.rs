@@ -7,7 +7,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use tautline::output::folder_of;
 use tautline::picture;
-use tautline::session::{Folder, Session, SessionError, SweepFolder, answered, status};
+use tautline::session::{SessionError, SweepFolder, answered, status};
 use tautline::study::{self, PlanError, Shard, Study, StudyFile};
 
 use crate::compute::{self, Work};
@@ -131,11 +131,7 @@ fn all(
             Ok(answered(&out, &study, Shard::WHOLE)?.is_none().then_some(study))
         };
         if let Some(study) = compute::run(py, open, |_, _| Ok(()))? {
-            let begin = |_: &Work| {
-                let folder = Arc::new(Folder::make(&out)?);
-                let begun = Session::begin(folder.clone(), study, base, Shard::WHOLE);
-                Ok(begun.inspect_err(|_| folder.take_back())?)
-            };
+            let begin = |_: &Work| going::begin(&out, study, base);
             notes.extend(going::to_the_end(py, begin, engine, &Told::within(py, progress, before, of))?);
         }
         before += steps(&point.study);

@@ -7,7 +7,9 @@ use std::path::PathBuf;
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::types::{Float64Type, Int64Type, UInt32Type, UInt64Type};
-use arrow_array::{Array, ArrayRef, ArrowPrimitiveType, RecordBatch, RecordBatchIterator, RecordBatchOptions};
+use arrow_array::{
+    Array, ArrayRef, ArrowPrimitiveType, RecordBatch, RecordBatchIterator, RecordBatchOptions, RecordBatchReader,
+};
 use arrow_ipc::reader::StreamReader;
 use arrow_ipc::writer::StreamWriter;
 use arrow_schema::{ArrowError, DataType, SchemaRef};
@@ -107,9 +109,7 @@ impl Table {
             let empty = RecordBatch::try_new_with_options(self.schema.clone(), columns.collect(), &options);
             batches.push(empty.map_err(wrong)?);
         }
-        let batches = RecordBatchIterator::new(batches.into_iter().map(Ok), self.schema.clone());
-        let stream = FFI_ArrowArrayStream::new(Box::new(batches));
-        PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
+        capsule(py, RecordBatchIterator::new(batches.into_iter().map(Ok), self.schema.clone()))
     }
 
     /// The columns as arrays. Numbers are one array, texts codes and the list of texts, points an array of shape (n, 2)
@@ -122,6 +122,14 @@ impl Table {
         }
         Ok(columns)
     }
+}
+
+/// A stream of batches as whoever reads Arrow streams takes it.
+pub(crate) fn capsule<'py>(
+    py: Python<'py>,
+    batches: impl RecordBatchReader + Send + 'static,
+) -> PyResult<Bound<'py, PyCapsule>> {
+    PyCapsule::new_with_value(py, FFI_ArrowArrayStream::new(Box::new(batches)), c"arrow_array_stream")
 }
 
 fn column<'py>(py: Python<'py>, kind: &DataType, arrays: &[ArrayRef]) -> PyResult<Bound<'py, PyAny>> {

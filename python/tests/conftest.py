@@ -31,6 +31,13 @@ def program() -> Program:
     return run
 
 
+def run_by(program: Program, plan: str, folder: Path) -> Path:
+    """Has the program run the study or sweep of a plan, and returns where it did."""
+    (folder / "plan.toml").write_text(plan)
+    program("study", "run", folder / "plan.toml", "--engine", "cpu", "--out", folder / "out")
+    return folder / "out"
+
+
 @pytest.fixture(scope="session")
 def rooms() -> tautrope.Scene:
     return tautrope.Scene.built_in("rooms")

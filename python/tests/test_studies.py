@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tautrope
-from conftest import Program
+from conftest import Program, run_by
 from tautrope import Answer, InputError, Scene, Study, StudyError
 
 PLAN: dict[str, Any] = {
@@ -46,10 +46,7 @@ traces = true
 @pytest.fixture(scope="module")
 def theirs(program: Program, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the study as the program runs it."""
-    folder = tmp_path_factory.mktemp("study")
-    (folder / "plan.toml").write_text(TOML)
-    program("study", "run", folder / "plan.toml", "--engine", "cpu", "--out", folder / "out")
-    return folder / "out"
+    return run_by(program, TOML, tmp_path_factory.mktemp("study"))
 
 
 @pytest.fixture(scope="module")

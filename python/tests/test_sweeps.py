@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tautrope
-from conftest import Program
+from conftest import Program, run_by
 from tautrope import Answer, InputError, Scene, Study, StudyError, Sweep, SweepAnswer
 
 PLAN: dict[str, Any] = {
@@ -47,10 +47,7 @@ against = 1
 @pytest.fixture(scope="module")
 def theirs(program: Program, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the sweep as the program runs it."""
-    folder = tmp_path_factory.mktemp("sweep")
-    (folder / "plan.toml").write_text(TOML)
-    program("study", "run", folder / "plan.toml", "--engine", "cpu", "--out", folder / "out")
-    return folder / "out"
+    return run_by(program, TOML, tmp_path_factory.mktemp("sweep"))
 
 
 @pytest.fixture(scope="module")

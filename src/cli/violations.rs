@@ -62,10 +62,7 @@ impl Violations {
     /// of.
     pub(crate) fn take_ends(&mut self, settled: &[SettledEnds]) -> Result<(), Failure> {
         match (settled.iter().find_map(SettledEnds::violation), self.policy) {
-            (Some((End::Free, first)), OnViolation::Error) => Err(self.refused(first)),
-            (Some((End::Anchor, first)), OnViolation::Error) => {
-                Err(self.refused(format_args!("the anchor of {first}")))
-            }
+            (Some(first), OnViolation::Error) => Err(self.refused(in_words(first))),
             _ => {
                 self.flag_ends(settled);
                 Ok(())
@@ -75,10 +72,7 @@ impl Violations {
 
     /// The same of ropes whose ends both move.
     pub(crate) fn flag_ends(&mut self, settled: &[SettledEnds]) {
-        settled.iter().filter_map(SettledEnds::violation).for_each(|(end, violation)| match end {
-            End::Free => self.warn(violation),
-            End::Anchor => self.warn(format_args!("the anchor of {violation}")),
-        });
+        settled.iter().filter_map(SettledEnds::violation).for_each(|violation| self.warn(in_words(violation)));
     }
 
     fn warn(&mut self, violation: impl Display) {
@@ -114,5 +108,13 @@ impl Violations {
             say!("warning: and {more} more traces that cross walls; {list}");
         }
         self.found
+    }
+}
+
+/// What an end does that breaks the rules.
+fn in_words((end, violation): (End, &Violation)) -> String {
+    match end {
+        End::Free => violation.to_string(),
+        End::Anchor => format!("the anchor of {violation}"),
     }
 }

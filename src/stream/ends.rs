@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::{OnViolation, StreamError, Times};
+use super::{OnViolation, Stage, StreamError, Times};
 use crate::engine::{Engine, Job};
 use crate::output::{EventWriter, ResultWriter, StepWriter, WholeFile, commit};
 use crate::read_error::ReadError;
@@ -92,23 +92,8 @@ pub struct EndsFiles<'a> {
     pub steps: Option<(&'a Path, &'a [Centre])>,
 }
 
-/// How far such a stream is: said twice of each batch.
-pub enum EndsStage<'a> {
-    /// The batch is about to be evaluated.
-    Read {
-        /// Its traces.
-        settled: &'a [SettledEnds],
-        /// How much of the source has been read with it, in the unit of [`EndsSource::size`].
-        position: u64,
-    },
-    /// It is evaluated, and about to be written.
-    Evaluated {
-        /// Its traces.
-        settled: &'a [SettledEnds],
-        /// What became of them, in the same order.
-        records: &'a [EndsRecord],
-    },
-}
+/// How far such a stream is.
+pub type EndsStage<'a> = Stage<'a, SettledEnds, EndsRecord>;
 
 /// Evaluates all traces of a source among the walls of `model` and writes their ropes to `files`, which appear at the
 /// end, all or none. `watch` is told of each batch. Memory is bounded by a batch and the anchors' paths.
@@ -139,12 +124,12 @@ pub fn evaluate_ends(
                 End::Anchor => StreamError::AnchorViolation(Box::new(*first)),
             });
         }
-        watch(EndsStage::Read { settled: &settled, position: source.reader.position() });
+        watch(Stage::Read { settled: &settled, position: source.reader.position() });
         times.prepared += start.elapsed();
         let start = Instant::now();
         let records = engine.evaluate_ends(&settled, job)?;
         times.evaluated += start.elapsed();
-        watch(EndsStage::Evaluated { settled: &settled, records: &records });
+        watch(Stage::Evaluated { settled: &settled, records: &records });
         times.written += writers.write(model.scene(), &settled, records)?;
     }
     times.written += writers.finish()?;

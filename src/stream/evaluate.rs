@@ -27,27 +27,27 @@ pub struct Times {
     pub written: Duration,
 }
 
-/// How far a stream is: said twice of each batch.
-pub enum Stage<'a> {
+/// How far a stream is: said twice of each batch. It is one of settled traces `T`, of which records `R` come.
+pub enum Stage<'a, T = SettledTrace, R = TraceRecord> {
     /// The batch is about to be evaluated.
     Read {
         /// Its traces.
-        settled: &'a [SettledTrace],
-        /// How much of the source has been read with it, in the unit of [`Batches::size`].
+        settled: &'a [T],
+        /// How much of the source has been read with it, in the unit of its size.
         position: u64,
     },
     /// It is evaluated, and about to be written.
     Evaluated {
         /// Its traces.
-        settled: &'a [SettledTrace],
+        settled: &'a [T],
         /// What became of them, in the same order.
-        records: &'a [TraceRecord],
+        records: &'a [R],
     },
 }
 
-impl Stage<'_> {
+impl<T, R> Stage<'_, T, R> {
     /// What became of the batch's traces; nothing before they are evaluated.
-    pub fn records(&self) -> &[TraceRecord] {
+    pub fn records(&self) -> &[R] {
         match self {
             Stage::Read { .. } => &[],
             Stage::Evaluated { records, .. } => records,

@@ -294,11 +294,11 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(dead_code, reason = "of these types there are layouts, no values")]
     fn a_layout_is_what_fields_there_are_in_which_order() {
         /// A state.
         #[derive(JsonSchema)]
         #[schemars(rename = "S")]
-        #[allow(dead_code)]
         struct Old {
             /// Before.
             first: u64,
@@ -307,7 +307,6 @@ mod tests {
         }
         #[derive(JsonSchema)]
         #[schemars(rename = "S")]
-        #[allow(dead_code)]
         struct Reworded {
             first: u64,
             second: u64,
@@ -315,7 +314,6 @@ mod tests {
         }
         #[derive(JsonSchema)]
         #[schemars(rename = "S")]
-        #[allow(dead_code)]
         struct Turned {
             second: u64,
             first: u64,
@@ -323,7 +321,6 @@ mod tests {
         }
         #[derive(JsonSchema)]
         #[schemars(rename = "S")]
-        #[allow(dead_code)]
         struct Retyped {
             first: u64,
             second: u64,
@@ -331,7 +328,6 @@ mod tests {
         }
         #[derive(JsonSchema)]
         #[schemars(rename = "I")]
-        #[allow(dead_code)]
         struct Inner<T> {
             count: T,
         }
