@@ -21,6 +21,8 @@ const STOPPED: u32 = 2u;
 
 // The event of an unwrap; of a wrap it is the vertex.
 const UNWRAP: u32 = 0xffffffffu;
+// What stands for a number that is not known.
+const UNKNOWN: u32 = 0xffffffffu;
 
 // By what share of its two products a turn can be off: 2^-20. Rounded factors are good to 2^-24 and 2^-23, each
 // product and their difference to 2^-23: 3.5 x 2^-23 in all, and the bound itself is rounded.
@@ -63,16 +65,18 @@ struct Lane {
     farthest: f32,
     // Whose stack is its.
     number: u32,
+    // The ray after which the leg meets the line of `way` when it turns back, or UNKNOWN.
+    way_low: u32,
     unused_x: u32,
     unused_y: u32,
-    unused_z: u32,
 }
 
 @group(0) @binding(0) var<uniform> job: Job;
 // Fans and points. Of a fan, the ways to its vertices as f32; of a point, its place in whole numbers.
 @group(0) @binding(1) var<storage, read> data: array<vec2<u32>>;
-// The vertex of each ray in `data`.
-@group(0) @binding(2) var<storage, read> vertices: array<u32>;
+// Of each ray in `data`: its vertex, and where it goes on in the fan of that, or UNKNOWN: twice the last ray that does
+// not lie counter-clockwise of it, and one more if it lies on that. The CPU found these by exact signs.
+@group(0) @binding(2) var<storage, read> rays: array<vec2<u32>>;
 // Of each pivot: where its fan begins, how many rays it has, 0 if it is not there; and its place.
 @group(0) @binding(3) var<storage, read> pivots: array<vec4<u32>>;
 @group(0) @binding(4) var<storage, read_write> lanes: array<Lane>;
@@ -102,6 +106,14 @@ fn ray_at(place: u32) -> vec2<f32> {
     return bitcast<vec2<f32>>(data[place]);
 }
 
+// After which ray a leg goes on that comes along a ray which `goes_on` there, and turns by `dir`: it meets what lies on
+// its own line at once. Back there, it meets the line last.
+fn low_after(goes_on: u32, dir: f32, count: u32) -> u32 {
+    let last = goes_on >> 1u;
+    let is_before = (goes_on & 1u) == 1u && dir > 0.0;
+    return select(last, select(last, count, last == 0u) - 1u, is_before);
+}
+
 fn point_at(place: u32) -> vec2<i32> {
     return bitcast<vec2<i32>>(data[place]);
 }
@@ -123,11 +135,12 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
     var way = began.way;
     var back = began.back;
     var farthest = began.farthest;
+    var way_low = began.way_low;
     var fan = pivots[pivot].x;
-    var rays = pivots[pivot].y;
+    var count = pivots[pivot].y;
     var origin = bitcast<vec2<i32>>(pivots[pivot].zw);
     var low_number = began.low;
-    var high_number = select(low_number + 1u, 0u, low_number + 1u >= rays);
+    var high_number = select(low_number + 1u, 0u, low_number + 1u >= count);
     var low = ray_at(fan + low_number);
     var high = ray_at(fan + high_number);
     var b = point_at(min(point + 1u, last));
@@ -157,11 +170,11 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
             let ray = select(low, high, to > 0.0);
             let past_ray = select(-turn_low, turn_high, to > 0.0);
             let past_way = select(-1.0, turn_way, back == to);
-            let order = turn_of(way, ray, 0.0) * to;
             let both = past_ray > 0.0 && past_way > 0.0;
-            let certain = to != 0.0 && past_ray != 0.0 && past_way != 0.0 && !(both && order == 0.0);
+            let is_known = !both || way_low != UNKNOWN;
+            let certain = to != 0.0 && past_ray != 0.0 && past_way != 0.0 && is_known;
             let goes_on = inside || (certain && past_ray < 0.0 && past_way < 0.0);
-            let ray_first = past_ray > 0.0 && (past_way < 0.0 || order < 0.0);
+            let ray_first = past_ray > 0.0 && (past_way < 0.0 || low_number != way_low);
             // On which side of the leg the ray's vertex lies: the sum of three turns about the pivot.
             let a_b = wa.x * wb.y - wa.y * wb.x;
             let b_ray = wb.x * ray.y - wb.y * ray.x;
@@ -191,11 +204,11 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
             if passed {
                 if to > 0.0 {
                     low_number = high_number;
-                    high_number = select(high_number + 1u, 0u, high_number + 1u >= rays);
+                    high_number = select(high_number + 1u, 0u, high_number + 1u >= count);
                     low = high;
                 } else {
                     high_number = low_number;
-                    low_number = select(low_number, rays, low_number == 0u) - 1u;
+                    low_number = select(low_number, count, low_number == 0u) - 1u;
                     high = low;
                 }
                 place = fan + select(low_number, high_number, to > 0.0);
@@ -214,12 +227,15 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
             let is_wrap = event == 1u;
             let top = number * STACK + depth;
             var met = select(low_number, high_number, dir > 0.0);
-            var vertex = vertices[fan + met];
+            let met_ray = rays[fan + met];
+            var vertex = met_ray.x;
             var next_way = select(low, high, dir > 0.0);
             var next_back = -dir;
             var next = vertex;
+            var goes_on = met_ray.y;
             // The last leg doubles back along the rope itself: then it unwraps only half a turn further.
-            let doubles_back = unwrapped && turn_of(way, start, 0.0) * back >= 0.0;
+            let along = vec2<f32>(way.x * start.x, way.y * start.y);
+            let doubles_back = unwrapped && along.x + along.y <= sum_of(along) * SHARE;
             let room = events < LOG && select(!doubles_back && (depth > 1u || deeper == 0u), depth < STACK, is_wrap);
             if room && !is_wrap {
                 let left = stacks[top - 1u];
@@ -228,38 +244,33 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
                 vertex = UNWRAP;
                 next = job.anchor;
                 next_back = 0.0;
+                goes_on = UNKNOWN;
                 if depth > 1u {
                     let under = stacks[top - 2u];
                     next = under.x & 0x7fffffffu;
                     next_way = bitcast<vec2<f32>>(under.zw);
                     next_back = select(-1.0, 1.0, (under.x >> 31u) == 1u);
+                    // The ray on which the rope came there lies in the fan of the contact before, or of the anchor.
+                    if depth > 2u || deeper == 0u {
+                        var before = job.anchor;
+                        if depth > 2u {
+                            before = stacks[top - 3u].x & 0x7fffffffu;
+                        }
+                        if pivots[before].y > 0u {
+                            goes_on = rays[pivots[before].x + under.y].y;
+                        }
+                    }
                 }
             }
             let head = pivots[next];
-            var found = met;
+            let next_way_low = select(low_after(goes_on, -next_back, head.y), UNKNOWN, goes_on == UNKNOWN);
+            var found = next_way_low;
             if is_wrap {
                 start = next_way;
-                // Between which rays of the next fan this ray goes on: half the plane first, then the turn.
-                let below = start.y < 0.0 || (start.y == 0.0 && start.x < 0.0);
-                var least = 0u;
-                var most = head.y;
-                while least < most {
-                    let middle = (least + most) / 2u;
-                    let ray = ray_at(head.x + middle);
-                    let is_below = ray.y < 0.0 || (ray.y == 0.0 && ray.x < 0.0);
-                    let before = select(!is_below, ray.x * start.y - ray.y * start.x > 0.0, is_below == below);
-                    least = select(least, middle + 1u, before);
-                    most = select(middle, most, before);
-                }
-                found = select(least, head.y, least == 0u) - 1u;
-            } else if dir < 0.0 {
-                found = select(met, head.y, met == 0u) - 1u;
+            } else {
+                found = select(met, select(met, head.y, met == 0u) - 1u, dir < 0.0);
             }
-            let found_next = select(found + 1u, 0u, found + 1u >= head.y);
-            let next_low = ray_at(head.x + found);
-            let next_high = ray_at(head.x + found_next);
-            let between = turn_of(next_low, start, 0.0) > 0.0 && turn_of(next_high, start, 0.0) < 0.0;
-            if !room || head.y == 0u || (is_wrap && !between) {
+            if !room || head.y == 0u || found == UNKNOWN {
                 does = STOPPED;
             } else {
                 let clockwise = select(0u, 1u, dir < 0.0);
@@ -274,17 +285,18 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
                 unwrapped = !is_wrap;
                 pivot = next;
                 fan = head.x;
-                rays = head.y;
+                count = head.y;
                 let moved = bitcast<vec2<i32>>(head.zw);
                 wa = vec2<f32>(point_at(point) - moved);
                 wb = vec2<f32>(b - moved);
                 origin = moved;
                 low_number = found;
-                high_number = found_next;
-                low = next_low;
-                high = next_high;
+                high_number = select(found + 1u, 0u, found + 1u >= head.y);
+                low = ray_at(head.x + low_number);
+                high = ray_at(head.x + high_number);
                 way = next_way;
                 back = next_back;
+                way_low = next_way_low;
             }
         }
     }
@@ -293,6 +305,6 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
         does = STOPPED;
     }
     lanes[id.x] = Lane(
-        point, last, pivot, low_number, depth, deeper, does, events, way, back, farthest, number, 0u, 0u, 0u,
+        point, last, pivot, low_number, depth, deeper, does, events, way, back, farthest, number, way_low, 0u, 0u,
     );
 }

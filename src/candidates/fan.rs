@@ -14,8 +14,8 @@ pub const NO_VERTEX: u32 = u32::MAX;
 /// that are good to 2^-52, at most 1, with up to 3 added.
 const TELLS: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// The rays of the vertices that a pivot sees, counter-clockwise, and four rays along the axes that belong to no
-/// vertex: so two neighbours are never more than a right angle apart.
+/// The rays of the vertices that a pivot sees, counter-clockwise, and rays along the axes, which belong to no vertex,
+/// where none lies on them: so two neighbours are never more than a right angle apart.
 ///
 /// Of vertices on one ray only the nearest is there: where a leg can meet others, it meets that one first.
 ///
@@ -70,8 +70,7 @@ impl Fan {
             0.0.partial_cmp(&turn(p, q)).unwrap_or(Ordering::Equal).then_with(nearer)
         });
         rays.dedup_by(|further, nearer| {
-            let is_near = (further.key - nearer.key).abs() <= TELLS;
-            is_near && further.vertex != NO_VERTEX && nearer.vertex != NO_VERTEX && turn(nearer, further) == 0.0
+            (further.key - nearer.key).abs() <= TELLS && turn(nearer, further) == 0.0
         });
         let lengths = rays.iter().filter(|ray| ray.vertex != NO_VERTEX).map(|ray| ray.way.length());
         Fan {
@@ -136,6 +135,29 @@ impl Fan {
             }
         }
         None
+    }
+
+    /// Where the way from the point `from` to the pivot, drawn further, goes on: the last ray that does not lie
+    /// counter-clockwise of it, and whether it lies on that ray. Exact. O(log rays), and one step a ray that lies
+    /// along nearly the same line.
+    pub fn goes_on(&self, model: &Model, from: DVec2, pivot: DVec2) -> (usize, bool) {
+        let way = pivot - from;
+        // A product with an axis is exact.
+        let turn_from = |i: usize| match self.vertices[i] {
+            NO_VERTEX => self.ways[i].perp_dot(way),
+            vertex => -orient(from, pivot, model.vertices()[vertex as usize]),
+        };
+        let key = key(way) as f32;
+        let mut next = self.keys.partition_point(|&k| k < key) % self.rays();
+        // Rounded keys may be out of order.
+        while turn_from(next) >= 0.0 {
+            next = self.after(next);
+        }
+        while turn_from(self.before(next)) < 0.0 {
+            next = self.before(next);
+        }
+        let last = self.before(next);
+        (last, turn_from(last) == 0.0)
     }
 
     /// The ray of the vertex to which exactly this way leads; `None` if there is none. O(log rays), and one step a ray

@@ -1,15 +1,20 @@
 //! The kernel that takes traces along, `shaders/drag.wgsl`: its buffers, and its round trips.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 use wgpu::{BufferUsages, PollType};
 
 use super::buffers::{Mapped, binding, buffer, mapped};
-use super::lane::{Head, Job, Lane, NOTES, Note, Room, STACK, Stacked};
+use super::lane::{Head, Job, Lane, NOTES, Note, Ray, Room, STACK, Stacked};
 use super::pass::HALVES;
 use super::{Device, GpuError};
 
 /// The source of the kernel that takes traces along.
 pub const DRAG_WGSL: &str = include_str!("../../shaders/drag.wgsl");
+
+/// How many rays are written again at a time.
+const PAGE: usize = 256;
 
 /// How many points are written at a time.
 pub const CHUNK: usize = 64;
@@ -30,14 +35,16 @@ pub struct DragPass {
     workgroup: u32,
     room: Room,
     data: wgpu::Buffer,
-    vertices: wgpu::Buffer,
+    rays: wgpu::Buffer,
     pivots: wgpu::Buffer,
     heads: Vec<Head>,
     heads_changed: bool,
-    /// How many rays there are on the device, and those that are not there yet.
+    /// All rays, how many of them are on the device, the ways of those that are not, and which pages of those that are
+    /// have changed.
+    all_rays: Vec<Ray>,
     filled: usize,
     new_ways: Vec<[f32; 2]>,
-    new_vertices: Vec<u32>,
+    changed: BTreeSet<usize>,
     halves: [Half; HALVES],
 }
 
@@ -114,10 +121,10 @@ impl DragPass {
         });
         let input = BufferUsages::STORAGE | BufferUsages::COPY_DST;
         let data = buffer(device, "data", (room.rays + HALVES * room.points) * size_of::<[u32; 2]>(), input);
-        let vertices = buffer(device, "vertices", room.rays * size_of::<u32>(), input);
+        let rays = buffer(device, "rays", room.rays * size_of::<Ray>(), input);
         let heads: Vec<Head> = places.iter().map(|&place| Head { first: 0, rays: 0, place }).collect();
         let pivots = buffer(device, "pivots", size_of_val(&*heads), input);
-        let halves = std::array::from_fn(|_| Half::new(device, &layout, room, [&data, &vertices, &pivots]));
+        let halves = std::array::from_fn(|_| Half::new(device, &layout, room, [&data, &rays, &pivots]));
         opened.check()?;
         Ok(DragPass {
             device: opened,
@@ -125,13 +132,14 @@ impl DragPass {
             workgroup,
             room,
             data,
-            vertices,
+            rays,
             pivots,
             heads,
             heads_changed: true,
+            all_rays: Vec::new(),
             filled: 0,
             new_ways: Vec::new(),
-            new_vertices: Vec::new(),
+            changed: BTreeSet::new(),
             halves,
         })
     }
@@ -148,34 +156,42 @@ impl DragPass {
 
     /// Whether any fan lies on the device.
     pub fn has_fans(&self) -> bool {
-        self.filled > 0
+        !self.all_rays.is_empty()
     }
 
-    /// Whether the fan of a pivot, by its index, lies on the device.
-    pub fn has_fan(&self, pivot: usize) -> bool {
-        self.heads[pivot].rays > 0
+    /// All pivots, by their index, and where their fans lie.
+    pub fn heads(&self) -> &[Head] {
+        &self.heads
     }
 
-    /// Brings the fan of a pivot; false if there is no room for it.
-    pub fn bring_fan(&mut self, pivot: usize, ways: &[[f32; 2]], vertices: impl Iterator<Item = u32>) -> bool {
-        let first = self.filled + self.new_ways.len();
+    /// Brings the fan of a pivot, each ray's way in units of the grid; false if there is no room for it.
+    pub fn bring_fan(&mut self, pivot: usize, ways: &[[f32; 2]], rays: &[Ray]) -> bool {
+        let first = self.all_rays.len();
         if first + ways.len() > self.room.rays {
             return false;
         }
         self.new_ways.extend_from_slice(ways);
-        self.new_vertices.extend(vertices);
+        self.all_rays.extend_from_slice(rays);
         let head = &mut self.heads[pivot];
         (head.first, head.rays) = (first as u32, ways.len() as u32);
         self.heads_changed = true;
         true
     }
 
+    /// Says where ray `i` of a pivot's fan [goes on](Ray::goes_on).
+    pub fn set_goes_on(&mut self, pivot: usize, i: usize, goes_on: u32) {
+        let at = self.heads[pivot].first as usize + i;
+        self.all_rays[at].goes_on = goes_on;
+        self.changed.insert(at / PAGE);
+    }
+
     /// Forgets all fans.
     pub fn forget(&mut self) {
         self.heads.iter_mut().for_each(|head| head.rays = 0);
         (self.filled, self.heads_changed) = (0, true);
+        self.all_rays.clear();
         self.new_ways.clear();
-        self.new_vertices.clear();
+        self.changed.clear();
     }
 
     /// Where a half's points begin.
@@ -244,11 +260,18 @@ impl DragPass {
         assert!(lanes.len() <= self.room.lanes, "a half takes what it has room for");
         let Device { device, queue, .. } = &self.device;
         if !self.new_ways.is_empty() {
-            queue.write_buffer(&self.data, 8 * self.filled as u64, bytemuck::cast_slice(&self.new_ways));
-            queue.write_buffer(&self.vertices, 4 * self.filled as u64, bytemuck::cast_slice(&self.new_vertices));
-            self.filled += self.new_ways.len();
+            queue.write_buffer(&self.data, (self.filled * POINT) as u64, bytemuck::cast_slice(&self.new_ways));
+            self.changed.extend(self.filled / PAGE..self.all_rays.len().div_ceil(PAGE));
+            self.filled = self.all_rays.len();
             self.new_ways.clear();
-            self.new_vertices.clear();
+        }
+        while let Some(page) = self.changed.pop_first() {
+            let mut end = page + 1;
+            while self.changed.remove(&end) {
+                end += 1;
+            }
+            let part = &self.all_rays[page * PAGE..(end * PAGE).min(self.filled)];
+            queue.write_buffer(&self.rays, (page * PAGE * size_of::<Ray>()) as u64, bytemuck::cast_slice(part));
         }
         if std::mem::take(&mut self.heads_changed) {
             queue.write_buffer(&self.pivots, 0, bytemuck::cast_slice(&self.heads));
@@ -339,8 +362,8 @@ impl Half {
             usage: BufferUsages::MAP_WRITE | BufferUsages::COPY_SRC,
             mapped_at_creation: true,
         });
-        let [data, vertices, pivots] = shared;
-        let all = [&job, data, vertices, pivots, &lanes, &stacks, &notes];
+        let [data, rays, pivots] = shared;
+        let all = [&job, data, rays, pivots, &lanes, &stacks, &notes];
         let entries: Vec<_> = (0..)
             .zip(all)
             .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })

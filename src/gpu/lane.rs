@@ -18,6 +18,9 @@ pub const STOPPED: u32 = 2;
 /// The event of an unwrap; the shader's `UNWRAP`.
 pub const UNWRAPPED: u32 = u32::MAX;
 
+/// What stands for a number that is not known; the shader's constant of this name.
+pub const UNKNOWN: u32 = u32::MAX;
+
 /// The bit of a contact's vertex that says that it lies right of the rope.
 pub const RIGHT: u32 = 1 << 31;
 
@@ -49,8 +52,10 @@ pub struct Lane {
     pub farthest: f32,
     /// Whose stack is its.
     pub number: u32,
+    /// The ray of the pivot's fan after which the leg meets the line of `way` when it turns back, or [`UNKNOWN`].
+    pub way_low: u32,
     /// Fills 16 bytes.
-    pub unused: [u32; 3],
+    pub unused: [u32; 2],
 }
 
 /// An event; the shader's `notes`.
@@ -79,6 +84,17 @@ pub struct Stacked {
     pub way: [f32; 2],
 }
 
+/// A ray of a fan, but for its way; the shader's `rays`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Ray {
+    /// Its vertex.
+    pub vertex: u32,
+    /// Where it goes on in the fan of that, if both fans are on the device, else [`UNKNOWN`]: twice the last ray that
+    /// does not lie counter-clockwise of it, and one more if it lies on that.
+    pub goes_on: u32,
+}
+
 /// The room that a pass has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Room {
@@ -103,8 +119,19 @@ pub(super) struct Job {
 /// Where a pivot's fan lies, and the pivot; the shader's `pivots`.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct Head {
-    pub first: u32,
-    pub rays: u32,
-    pub place: [i32; 2],
+pub struct Head {
+    /// Where its fan begins.
+    pub(super) first: u32,
+    /// How many rays that has, 0 if it is not on the device.
+    pub(super) rays: u32,
+    /// The pivot's place on the grid.
+    pub(super) place: [i32; 2],
+}
+
+impl Head {
+    /// Whether the fan is on the device.
+    #[inline]
+    pub fn has_fan(&self) -> bool {
+        self.rays > 0
+    }
 }

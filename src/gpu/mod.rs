@@ -25,7 +25,7 @@ pub use drag::{CHUNK, DRAG_WGSL, DragPass};
 pub use drivers::driver_faults;
 pub use error::GpuError;
 pub use kernel::{DECIDE_WGSL, Deciding, Kernel, RAYS_WGSL, SWEEP_WGSL, Sweeping, TryingAll};
-pub use lane::{DONE, Lane, NOTES, Note, RIGHT, RUNS, Room, STACK, STOPPED, Stacked, UNWRAPPED};
+pub use lane::{DONE, Head, Lane, NOTES, Note, RIGHT, RUNS, Ray, Room, STACK, STOPPED, Stacked, UNKNOWN, UNWRAPPED};
 pub use pass::{GpuPass, HALVES};
 pub use peak::PEAK_WGSL;
 pub use probe::PROBE_WGSL;

@@ -6,7 +6,7 @@ use super::Model;
 
 /// A vertex or the anchor, as what the rope's last leg turns about. Numbered by vertex; the anchor comes after all of
 /// them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(transparent)]
 pub struct Pivot(u32);
 

@@ -122,7 +122,7 @@ fn a_bound_that_is_too_small_is_found_out() {
         ("products * (2.0 * SHARE) + 2.0 * OFF * sum_of(ray) + 2.0 * sums", "0.0"),
         ("let turn = left - right;", "let turn = left + right;"),
         ("past_ray < 0.0 && past_way < 0.0)", "past_ray < 0.0)"),
-        ("past_way < 0.0 || order < 0.0", "past_way < 0.0 || order > 0.0"),
+        ("low_number != way_low", "low_number == way_low"),
         ("beyond < -bound", "beyond > -bound"),
         ("var next_back = -dir;", "var next_back = dir;"),
         ("farthest = max(farthest, wb.x * wb.x + wb.y * wb.y)", "farthest = wb.x * wb.x"),

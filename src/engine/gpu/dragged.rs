@@ -9,13 +9,13 @@ use crate::candidates::{Grid, Lists, Simd};
 use crate::engine::hand::Hand;
 use crate::engine::windows::Windows;
 use crate::engine::{Job, WINDOW};
-use crate::gpu::{CHUNK, DragPass, Lane, Note, RIGHT, STOPPED, Stacked, UNWRAPPED};
+use crate::gpu::{CHUNK, Lane, Note, RIGHT, STOPPED, Stacked, UNKNOWN, UNWRAPPED};
 use crate::rope::{Contact, Side, TraceRecord};
-use crate::scene::Pivot;
+use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
 
 /// How many legs the CPU takes at most where the device was not certain, before that is asked again.
-const LEGS_OF_DOUBT: usize = 4;
+const LEGS_OF_DOUBT: usize = 1;
 
 /// How many contacts a trace brings to the device that goes on there. A rope that unwraps more of them stops once.
 const CONTACTS: usize = 8;
@@ -138,20 +138,8 @@ impl<'a> Slot<'a> {
     }
 
     /// What its rope turns about.
-    pub(super) fn pivot(&self) -> usize {
-        self.lane.pivot as usize
-    }
-
-    /// Brings the fan of its pivot if that is not there; false if there is no room for it.
-    pub(super) fn bring_fan(&self, pass: &mut DragPass, shared: &Shared<'_>) -> bool {
-        if pass.has_fan(self.pivot()) {
-            return true;
-        }
-        let (model, rope) = (shared.lists.model(), &self.windows.progress.rope);
-        let pivot = model.pivot(rope.contacts().last().map(|c| c.vertex));
-        let Some(list) = shared.lists.of(pivot, f64::INFINITY) else { return true };
-        let Some(fan) = list.fan(model, rope.pivot()) else { return true };
-        pass.bring_fan(pivot.index(), &shared.grid.fan(fan), (0..fan.rays()).map(|i| fan.vertex(i)))
+    pub(super) fn pivot(&self, model: &Model) -> Pivot {
+        model.pivot(self.windows.progress.rope.contacts().last().map(|c| c.vertex))
     }
 
     /// Takes the trace as far as the device took it, and a bit further where that was not certain of what comes next.
@@ -264,6 +252,13 @@ impl<'a> Slot<'a> {
             self.stack.push(Stacked { vertex: contact.vertex | side, ray: ray as u32, way: grid.way(way) });
         }
         self.stack.reverse();
+        // The list that it came along may have been forgotten since.
+        let list = hand.list(pivot, f64::INFINITY, job).ok_or(WINDOW)?;
+        let fan = list.fan(model, rope.pivot()).ok_or(WINDOW)?;
+        let way_low = contacts.last().map_or(UNKNOWN, |contact| {
+            let (ray, on_it) = fan.goes_on(model, rope.prior(), rope.pivot());
+            if on_it && contact.side == Side::Left { fan.before(ray) as u32 } else { ray as u32 }
+        });
         let back = |c: &Contact| if c.side == Side::Right { 1.0 } else { -1.0 };
         self.lane = Lane {
             pivot: pivot.index() as u32,
@@ -272,6 +267,7 @@ impl<'a> Slot<'a> {
             deeper: (contacts.len() - self.stack.len()) as u32,
             way: grid.way(rope.pivot() - rope.prior()),
             back: contacts.last().map_or(0.0, back),
+            way_low,
             ..Lane::default()
         };
         Ok(())

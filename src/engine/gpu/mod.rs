@@ -4,6 +4,7 @@
 
 mod deciding;
 mod dragged;
+mod fans;
 mod fast;
 mod finding;
 mod rays;

@@ -1,19 +1,21 @@
 //! The engine of the product: a compute shader takes traces along through many legs and events, the CPU keeps the books
 //! and decides what the shader is not certain of.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use rayon::prelude::*;
 
 use super::dragged::{Shared, Slot};
+use super::fans::bring_fans;
 use crate::candidates::{Grid, Lists, Simd};
 use crate::engine::hand::Hand;
 use crate::engine::windows::Windows;
 use crate::engine::{Engine, EngineError, Job, Phase, WINDOW};
 use crate::gpu::{AdapterSummary, CHUNK, DRAG_WGSL, Device, DragPass, GpuError, HALVES, Lane, NOTES, Room, Tuning};
 use crate::rope::TraceRecord;
-use crate::scene::Model;
+use crate::scene::{Model, Pivot};
 use crate::trace::{SettledTrace, bounds};
 
 /// What the engine is called, in either precision.
@@ -279,13 +281,18 @@ impl<'a> Half<'a> {
     fn send(&mut self, pass: &mut DragPass, number: usize, shared: &Shared<'a>) {
         let Half { slots, active, lanes, .. } = self;
         shared.job.time(Phase::Upload, || {
-            let bring =
-                |pass: &mut DragPass, slots: &[Slot<'a>]| active.iter().all(|&i| slots[i].bring_fan(pass, shared));
+            let model = shared.lists.model();
+            let bring = |pass: &mut DragPass, slots: &[Slot<'a>]| {
+                let pivots: BTreeSet<Pivot> = active.iter().map(|&i| slots[i].pivot(model)).collect();
+                bring_fans(pass, shared, pivots)
+            };
             if !bring(pass, slots) {
                 pass.forget();
                 bring(pass, slots);
             }
-            let (on, off): (Vec<usize>, Vec<usize>) = active.iter().partition(|&&i| pass.has_fan(slots[i].pivot()));
+            let heads = pass.heads();
+            let (on, off): (Vec<usize>, Vec<usize>) =
+                active.iter().partition(|&&i| heads[slots[i].pivot(model).index()].has_fan());
             finish_pieces(slots, &off, shared);
             *active = on;
             lanes.clear();

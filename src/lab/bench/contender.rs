@@ -96,7 +96,12 @@ impl Contender {
 
     /// Whether the widest window changes what it does.
     pub fn is_windowed(&self) -> bool {
-        self.engine.asks && !(self.engine == GPU.engine && self.decides() == Precision::Certified)
+        self.engine.asks && !self.asks_cpu()
+    }
+
+    /// Whether a device takes its traces along, and the CPU decides what that is not certain of.
+    pub fn asks_cpu(&self) -> bool {
+        self.engine == GPU.engine && self.decides() == Precision::Certified
     }
 
     /// The most legs that one of its queries covers if the setting allows `legs`; `None` if that changes nothing.

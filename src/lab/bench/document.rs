@@ -66,6 +66,8 @@ pub struct Line {
     pub events_per_step: f64,
     /// Wraps and unwraps a second, by the median.
     pub events_per_second: f64,
+    /// Of engines that take traces along on a device, which share of the steps the CPU decided; null for others.
+    pub doubts_per_step: Option<f64>,
     /// The time a step in each phase, in nanoseconds, summed over threads.
     pub phases: BTreeMap<&'static str, f64>,
     /// How many ropes are wrong at the end; null for engines that promise right ones.
@@ -125,6 +127,7 @@ impl From<&Row> for Line {
             share_of_peak: row.share_of_peak(),
             events_per_step: row.events_per_step,
             events_per_second: row.events_per_second(),
+            doubts_per_step: row.doubts_per_step,
             phases: Phase::ALL.map(Phase::name).into_iter().zip(row.phases).collect(),
             wrong_ropes: row.wrong_ropes,
             relative: row.relative.map(|relative| Ratio { to: Contender::BASELINE.engine.name, relative }),

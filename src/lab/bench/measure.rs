@@ -70,6 +70,8 @@ pub struct Row {
     pub tests_avoided_per_step: Option<f64>,
     /// Wraps and unwraps a step.
     pub events_per_step: f64,
+    /// Of engines that take traces along on a device, which share of the steps the CPU decided; `None` for others.
+    pub doubts_per_step: Option<f64>,
     /// The time a step in every phase, in nanoseconds, summed over threads, from a run of its own: reading the clock
     /// slows engines down. Zero for phases that the engine has not or does not time.
     pub phases: [f64; Phase::ALL.len()],
@@ -137,6 +139,7 @@ struct Lane<'w> {
     ns: Vec<f64>,
     tests: u64,
     events: u64,
+    doubts: u64,
     wrong: Option<usize>,
     phases: [f64; Phase::ALL.len()],
 }
@@ -251,7 +254,7 @@ pub(in crate::lab) fn order(count: usize, repeat: usize) -> impl Iterator<Item =
 impl<'w> Lane<'w> {
     fn new(runner: Runner<'w>, work: &Work) -> Result<Self, BenchError> {
         let own = if runner.is_short() { Some(known(work, runner.traces())?) } else { None };
-        Ok(Lane { runner, own, ns: Vec::new(), tests: 0, events: 0, wrong: None, phases: Default::default() })
+        Ok(Lane { runner, own, ns: Vec::new(), tests: 0, events: 0, doubts: 0, wrong: None, phases: Default::default() })
     }
 
     /// Runs once more, and compares what comes out with what others gave.
@@ -259,7 +262,7 @@ impl<'w> Lane<'w> {
         let job = Job::new();
         let run = self.runner.run(&job)?;
         self.ns.push(run.ns_per_step);
-        self.tests = job.tests();
+        (self.tests, self.doubts) = (job.tests(), job.doubts());
         self.events = run.records.iter().map(|r| r.events.len() as u64).sum();
         self.wrong = self.own.as_mut().unwrap_or(agreement).check(self.runner.contender, &run.records)?;
         Ok(())
@@ -294,6 +297,7 @@ impl<'w> Lane<'w> {
             peak: None,
             tests_avoided_per_step: (self.tests > 0).then(|| (n + 1) as f64 - tests_per_step),
             events_per_step: self.events as f64 / self.runner.steps_once() as f64,
+            doubts_per_step: contender.asks_cpu().then(|| self.doubts as f64 / self.runner.steps() as f64),
             phases: self.phases,
             relative,
             wrong_ropes: self.wrong,

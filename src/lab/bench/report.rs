@@ -57,14 +57,15 @@ fn side_by_side(setting: &Setting, rows: &[Row]) -> String {
     });
     let names = ["engine", "variant"];
     let name = |row: &Row| [row.contender.engine.name.to_owned(), variant(row)];
-    let columns = ["tests/step", "avoided", "tests/s", "events/step", "events/s", "wrong ropes"];
+    let columns = ["tests/step", "avoided", "tests/s", "events/step", "events/s", "doubts/step", "wrong ropes"];
     text += "\n";
     text += &table(&names, &columns, rows, name, |row| {
         let tried = row.tests_avoided_per_step.map(|avoided| [short(row.tests_per_step), short(avoided)]);
         let [tests, avoided] = tried.unwrap_or([NONE; 2].map(str::to_owned));
         let tested = row.tests_per_second().map_or(NONE.to_owned(), rate);
         let wrong = row.wrong_ropes.map_or(NONE.to_owned(), |w| grouped(w as u64));
-        [tests, avoided, tested, short(row.events_per_step), rate(row.events_per_second()), wrong]
+        let doubts = row.doubts_per_step.map_or(NONE.to_owned(), short);
+        [tests, avoided, tested, short(row.events_per_step), rate(row.events_per_second()), doubts, wrong]
     });
     for row in rows {
         if let (Some(peak), Some(tests), Some(share)) = (row.peak, row.tests_per_second(), row.share_of_peak()) {
