@@ -69,9 +69,7 @@ impl Fan {
             };
             0.0.partial_cmp(&turn(p, q)).unwrap_or(Ordering::Equal).then_with(nearer)
         });
-        rays.dedup_by(|further, nearer| {
-            (further.key - nearer.key).abs() <= TELLS && turn(nearer, further) == 0.0
-        });
+        rays.dedup_by(|further, nearer| (further.key - nearer.key).abs() <= TELLS && turn(nearer, further) == 0.0);
         let lengths = rays.iter().filter(|ray| ray.vertex != NO_VERTEX).map(|ray| ray.way.length());
         Fan {
             nearest: lengths.fold(f64::INFINITY, f64::min),

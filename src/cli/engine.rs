@@ -11,6 +11,7 @@ use tautline::gpu::{AdapterChoice, Device, GpuError, driver_faults};
 use tautline::scene::Model;
 
 use super::failure::Failure;
+use super::parse::memory;
 
 /// What computes the ropes, and on what.
 #[derive(Debug, clap::Args)]
@@ -24,6 +25,10 @@ pub(crate) struct EngineArgs {
     /// Whether exact signs decide, or f32 alone; `fast` implies `--engine gpu` [default: certified]
     #[arg(long, value_enum, value_name = "PRECISION")]
     precision: Option<PrecisionName>,
+    /// How much of a GPU's memory the traces take at once at most, such as 512M or 2G [default: see `tautline
+    /// adapters`]
+    #[arg(long, value_name = "SIZE", value_parser = memory)]
+    gpu_memory: Option<usize>,
 }
 
 /// The engine asked for; `None` for the one that suits the machine.
@@ -90,6 +95,9 @@ impl EngineArgs {
         if self.adapter.is_some() && !kind.needs_gpu() {
             return Err(Failure::input(anyhow!("--adapter goes with --engine gpu or auto")));
         }
+        if self.gpu_memory.is_some() && !kind.needs_gpu() {
+            return Err(Failure::input(anyhow!("--gpu-memory goes with --engine gpu or auto")));
+        }
         if !kind.takes(precision) {
             return Err(Failure::input(anyhow!(
                 "precision fast is one of the engine gpu: give --engine gpu or auto with it, or take precision \
@@ -102,7 +110,7 @@ impl EngineArgs {
     /// Opens the engine asked for, with a precision that was settled elsewhere.
     pub(crate) fn open_for(&self, precision: Precision, model: &Arc<Model>) -> Result<Opened, Failure> {
         self.check(precision)?;
-        let options = Options { precision, ..Options::default() };
+        let options = Options { precision, memory: self.gpu_memory, ..Options::default() };
         let choice = self.adapter.as_deref().map_or(AdapterChoice::Best, named);
         let opened = match (self.engine.0, &self.adapter) {
             (None, None) => open_best(model.clone(), &options)?,

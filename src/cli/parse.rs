@@ -16,6 +16,21 @@ pub(crate) fn point(text: &str) -> Result<DVec2, String> {
     Ok(DVec2::new(number(x).ok_or_else(wrong)?, number(y).ok_or_else(wrong)?))
 }
 
+/// A number of bytes.
+pub(crate) fn memory(text: &str) -> Result<usize, String> {
+    let wrong = || "give a number of bytes with a unit, such as 512M or 2G".to_owned();
+    let (number, unit) = text.split_at(text.find(|c: char| !c.is_ascii_digit()).ok_or_else(wrong)?);
+    let power = match unit.to_ascii_uppercase().trim_end_matches('B').trim_end_matches('I') {
+        "K" => 10,
+        "M" => 20,
+        "G" => 30,
+        "T" => 40,
+        _ => return Err(wrong()),
+    };
+    let bytes = number.parse::<usize>().ok().and_then(|n| n.checked_mul(1 << power));
+    bytes.filter(|&n| n > 0).ok_or_else(wrong)
+}
+
 /// A stride: of so many points one is used.
 pub(crate) fn stride(text: &str) -> Result<u32, String> {
     let number = text.trim().parse().ok().filter(|&k| k > 0);

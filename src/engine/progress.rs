@@ -129,6 +129,21 @@ impl Progress {
         (self.at == to).then_some(())
     }
 
+    /// How many events there are so far.
+    pub(super) fn events(&self) -> usize {
+        self.events.len()
+    }
+
+    /// The fewest contacts that the rope has had since there were `events` of those; then it had `contacts`.
+    pub(super) fn fewest(&self, events: usize, contacts: usize) -> usize {
+        let mut now = contacts;
+        let after = self.events[events..].iter().map(|event| {
+            now = if event.kind == EventKind::Wrap { now + 1 } else { now - 1 };
+            now
+        });
+        after.fold(contacts, usize::min)
+    }
+
     /// Writes an event of the leg from point `at` down.
     pub(super) fn note(&mut self, trace: &SettledTrace, kind: EventKind, vertex: u32, side: Side) {
         self.events.push(Event { step: trace.step(self.at + 1) as u32, kind, vertex, side });

@@ -60,11 +60,14 @@ pub struct Options {
     pub precision: Precision,
     /// The most legs that one query covers, at least 1.
     pub window: usize,
+    /// How many bytes of a device's memory it takes at most, about; `None` for what suits the device
+    /// ([`Device::memory`]).
+    pub memory: Option<usize>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { precision: Precision::default(), window: WINDOW }
+        Options { precision: Precision::default(), window: WINDOW, memory: None }
     }
 }
 
@@ -193,7 +196,10 @@ impl EngineKind {
         }
         let (engine, on) = match (self.open, device) {
             (Open::Device(_), None) => return Err(EngineError::NoDevice { engine: self.name }),
-            (Open::Device(make), Some(device)) => (make(device.clone(), model, options)?, RunsOn::Device(device)),
+            (Open::Device(make), Some(device)) => {
+                let device = options.memory.map_or_else(|| device.clone(), |bytes| device.clone().with_memory(bytes));
+                (make(device.clone(), model, options)?, RunsOn::Device(device))
+            }
             (Open::Threads(make), _) => (make(model, options), RunsOn::Threads(self.threads())),
             (Open::Thread(make), _) => (make(model), RunsOn::Thread),
         };

@@ -22,6 +22,8 @@ pub struct Device {
     /// Others that fit as well what was asked for.
     passed_over: Vec<AdapterSummary>,
     tuning: Tuning,
+    /// How many bytes of it an engine takes at most.
+    memory: usize,
     /// The first thing that the device or its driver complained of since it was last asked.
     complaint: Arc<Mutex<Option<Complaint>>>,
     /// What it makes of f32, once it was asked.
@@ -65,8 +67,16 @@ impl Device {
             }
         });
         let tuning = Tuning::of(summary.kind, adapter.get_info().subgroup_max_size);
-        let arithmetic = Arc::default();
-        Ok(Device { device, queue, summary: summary.clone(), passed_over: Vec::new(), tuning, complaint, arithmetic })
+        Ok(Device {
+            device,
+            queue,
+            summary: summary.clone(),
+            passed_over: Vec::new(),
+            tuning,
+            memory: Tuning::memory(summary.kind),
+            complaint,
+            arithmetic: Arc::default(),
+        })
     }
 
     /// The adapter in words.
@@ -82,6 +92,24 @@ impl Device {
     /// What suits the adapter.
     pub fn tuning(&self) -> Tuning {
         self.tuning
+    }
+
+    /// How many bytes of the device's memory an engine takes at most, about: what a batch of traces needs there is
+    /// brought in parts. Some memory is always taken, a few MiB.
+    pub fn memory(&self) -> usize {
+        self.memory
+    }
+
+    /// The same device, of whose memory an engine takes at most so many bytes.
+    #[must_use]
+    pub fn with_memory(self, bytes: usize) -> Self {
+        Device { memory: bytes, ..self }
+    }
+
+    /// How many bytes a buffer of the device has at most, if shaders are to read it.
+    pub fn largest_buffer(&self) -> u64 {
+        let limits = self.device.limits();
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
     /// An error if the device has complained since it was last asked, or is lost.

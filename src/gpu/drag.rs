@@ -73,13 +73,19 @@ struct Sent {
 }
 
 impl DragPass {
-    /// The most room that a device has for a pass, in at most `budget` bytes of points and fans.
-    pub fn most(device: &Device, budget: usize, lanes: usize) -> Room {
-        let limits = device.device.limits();
-        let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size).min(budget as u64) as usize;
-        let all = bytes / POINT;
-        let stacks = limits.max_storage_buffer_binding_size as usize / (STACK * size_of::<Stacked>());
-        Room { lanes: lanes.min(stacks), points: (all / 8 * 3 / CHUNK).max(1) * CHUNK, rays: (all / 4).max(1) }
+    /// The most room that a device has for a pass of at most `lanes` lanes a half, in the [memory](Device::memory) that
+    /// it gives: an eighth of that for fans, at most a quarter for lanes, what is left for points.
+    pub fn most(device: &Device, lanes: usize) -> Room {
+        let largest = device.largest_buffer() as usize;
+        // Fans and points share a buffer, half of all that they take.
+        let bytes = device.memory().min(largest.saturating_mul(2));
+        let lanes = lanes.min(bytes / 4 / (HALVES * Room::LANE)).min(largest / (STACK * size_of::<Stacked>())).max(1);
+        let left = (bytes / 8 * 7).saturating_sub(lanes * HALVES * Room::LANE);
+        Room {
+            lanes,
+            points: (left / (HALVES * Room::POINT) / CHUNK).max(1) * CHUNK,
+            rays: (bytes / 8 / Room::RAY).max(1),
+        }
     }
 
     /// A pass of the kernel with source `wgsl` about pivots at these `places`, the anchor last.
@@ -243,10 +249,11 @@ impl DragPass {
         Ok(())
     }
 
-    /// Brings the last contacts of the trace of this number, at most [`STACK`].
-    pub fn bring_stack(&self, half: usize, number: usize, stack: &[Stacked]) {
+    /// Brings the last contacts of the trace of this number, above the lowest `below` of its stack; at most [`STACK`]
+    /// in all.
+    pub fn bring_stack(&self, half: usize, number: usize, below: usize, stack: &[Stacked]) {
         if !stack.is_empty() {
-            let at = (number * STACK * size_of::<Stacked>()) as u64;
+            let at = ((number * STACK + below) * size_of::<Stacked>()) as u64;
             self.device.queue.write_buffer(&self.halves[half].stacks, at, bytemuck::cast_slice(stack));
         }
     }

@@ -2,6 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::pass::HALVES;
+
 /// How many contacts of a trace the device knows at most, the last ones.
 pub const STACK: usize = 32;
 
@@ -104,6 +106,20 @@ pub struct Room {
     pub points: usize,
     /// How many rays all fans have.
     pub rays: usize,
+}
+
+impl Room {
+    /// How many bytes a lane takes, its stack and its notes, and what is read of it.
+    pub(super) const LANE: usize = 2 * size_of::<Lane>() + STACK * size_of::<Stacked>() + 2 * NOTES * size_of::<Note>();
+    /// How many bytes a point takes, and what it is written to first.
+    pub(super) const POINT: usize = 2 * size_of::<[i32; 2]>();
+    /// How many bytes a ray takes.
+    pub(super) const RAY: usize = size_of::<[f32; 2]>() + size_of::<Ray>();
+
+    /// How many bytes a pass with this room takes of a device, but for the pivots, 16 bytes each.
+    pub fn bytes(&self) -> usize {
+        HALVES * (self.lanes * Self::LANE + self.points * Self::POINT) + self.rays * Self::RAY
+    }
 }
 
 /// The shader's `Job`.

@@ -90,6 +90,7 @@ impl<K: Kernel> GpuPass<K> {
         let capacity = tuning
             .queries
             .min(limits.max_storage_buffer_binding_size as usize / bytes_a_query::<K>())
+            .min(opened.memory() / 4 / (HALVES * bytes_a_query::<K>()))
             .min(limits.max_compute_workgroups_per_dimension as usize * workgroup as usize)
             .min(TESTS_A_ROUND / (largest.max(1) * K::POINTS.max(1)))
             .max(workgroup as usize)

@@ -36,4 +36,14 @@ impl Tuning {
         };
         Tuning { queries, workgroup: wave.next_power_of_two().clamp(64, 256) }
     }
+
+    /// How many bytes of an adapter of this kind an engine takes at most unless told otherwise: room for as many traces
+    /// as [`of`](Self::of) has them, with some hundred points each.
+    pub fn memory(kind: AdapterKind) -> usize {
+        match kind {
+            AdapterKind::Discrete | AdapterKind::Virtual => 2 << 30,
+            AdapterKind::Integrated | AdapterKind::Other => 1 << 30,
+            AdapterKind::Software => 256 << 20,
+        }
+    }
 }

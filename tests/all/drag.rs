@@ -9,18 +9,18 @@ use proptest::test_runner::{RngAlgorithm, TestRng};
 use tautline::candidates::Lists;
 use tautline::engine::{Engine, EngineError, Gpu, Job, Reference};
 use tautline::example::{Walker, floor_plan, lattice_walls, random_walls, settled_walks, walks};
-use tautline::gpu::{DRAG_WGSL, Tuning};
+use tautline::gpu::{DRAG_WGSL, DragPass, Tuning};
 use tautline::rope::TraceRecord;
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
 
 use crate::support::software;
 
-const PLENTY: usize = 64 << 20;
+const PLENTY: usize = 128 << 20;
 
-fn engine(model: &Arc<Model>, budget: usize, lanes: usize, wgsl: &str) -> Gpu {
+fn engine(model: &Arc<Model>, memory: usize, lanes: usize, wgsl: &str) -> Gpu {
     let tuning = Tuning { queries: lanes, workgroup: 64 };
-    Gpu::with(software(), Lists::new(model.clone()).after(0), budget, tuning, wgsl).unwrap()
+    Gpu::with(software().with_memory(memory), Lists::new(model.clone()).after(0), tuning, wgsl).unwrap()
 }
 
 fn truth(model: &Arc<Model>, traces: &[SettledTrace]) -> Vec<TraceRecord> {
@@ -125,6 +125,9 @@ fn a_bound_that_is_too_small_is_found_out() {
         ("low_number != way_low", "low_number == way_low"),
         ("beyond < -bound", "beyond > -bound"),
         ("var next_back = -dir;", "var next_back = dir;"),
+        ("let last = goes_on >> 1u;", "let last = goes_on / 2u + 1u;"),
+        ("(goes_on & 1u) == 1u && dir > 0.0", "false"),
+        ("along.x + along.y <= sum_of(along) * SHARE", "false"),
         ("farthest = max(farthest, wb.x * wb.x + wb.y * wb.y)", "farthest = wb.x * wb.x"),
     ];
     for (right, wrong) in changes {
@@ -160,14 +163,37 @@ fn any_room_will_do() {
     traces.push(settle(&model, &Trace { id: 99, points: vec![model.anchor()] }));
     let truth = truth(&model, &traces);
     // Room for pieces of a few legs, for a few fans, for none; lanes for one trace, for some, for all.
-    for budget in [0, 1 << 10, 1 << 12, 1 << 14, 1 << 16, PLENTY] {
+    for memory in [0, 1 << 12, 1 << 15, 1 << 17, 1 << 19, 1 << 21, PLENTY] {
         for lanes in [0, 1, 7, 64] {
-            let mut engine = engine(&model, budget, lanes, DRAG_WGSL);
+            let mut engine = engine(&model, memory, lanes, DRAG_WGSL);
             for _ in 0..2 {
-                assert_eq!(differs(&mut engine, &traces, &truth), None, "{budget} bytes, {lanes} lanes");
+                assert_eq!(differs(&mut engine, &traces, &truth), None, "{memory} bytes, {lanes} lanes");
             }
         }
     }
+}
+
+#[test]
+fn a_pass_takes_no_more_memory_than_it_is_given() {
+    for shift in 14..34 {
+        for lanes in [1, 64, 1 << 13, 1 << 16] {
+            let room = DragPass::most(&software().with_memory(1 << shift), lanes);
+            // A lane, a chunk of points and a ray are the least.
+            assert!(room.bytes() <= (1 << shift).max(8 << 10), "2^{shift} bytes, {lanes} lanes: {room:?}");
+            assert!(room.lanes <= lanes);
+        }
+    }
+}
+
+#[test]
+fn walls_on_one_line_are_certain() {
+    let model = Arc::new(Model::new(floor_plan(), None).unwrap());
+    let traces = settled_walks(&model, Walker { step: 0.25, steps: 1000, seed: 3 }, 400);
+    let truth = truth(&model, &traces);
+    let mut engine = engine(&model, PLENTY, 400, DRAG_WGSL);
+    assert_eq!(differs(&mut engine, &traces, &truth), None);
+    let share = share_decided(&mut engine, &traces);
+    assert!(share > 0.99, "{share}");
 }
 
 #[test]

@@ -80,7 +80,7 @@ impl Subject {
 
 impl fmt::Display for Subject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Options { precision, window } = self.options;
+        let Options { precision, window, .. } = self.options;
         write!(f, "{} {}, window {window}", self.kind.name, precision.name())
     }
 }

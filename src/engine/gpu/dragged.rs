@@ -9,7 +9,7 @@ use crate::candidates::{Grid, Lists, Simd};
 use crate::engine::hand::Hand;
 use crate::engine::windows::Windows;
 use crate::engine::{Job, WINDOW};
-use crate::gpu::{CHUNK, Lane, Note, RIGHT, STOPPED, Stacked, UNKNOWN, UNWRAPPED};
+use crate::gpu::{CHUNK, Lane, Note, RIGHT, STACK, STOPPED, Stacked, UNKNOWN, UNWRAPPED};
 use crate::rope::{Contact, Side, TraceRecord};
 use crate::scene::{Model, Pivot};
 use crate::trace::SettledTrace;
@@ -17,7 +17,7 @@ use crate::trace::SettledTrace;
 /// How many legs the CPU takes at most where the device was not certain, before that is asked again.
 const LEGS_OF_DOUBT: usize = 1;
 
-/// How many contacts a trace brings to the device that goes on there. A rope that unwraps more of them stops once.
+/// How many contacts a trace brings to the device that has none of them. A rope that unwraps more of them stops once.
 const CONTACTS: usize = 8;
 
 /// What all slots share.
@@ -68,8 +68,11 @@ pub(super) struct Slot<'a> {
     last: usize,
     /// How the device is to know it.
     lane: Lane,
-    /// Its last contacts, if the device does not have them.
+    /// How many events there were when the device had all contacts that the lane counts; `None` if it has none.
+    noted: Option<usize>,
+    /// Its last contacts, if the device does not have them, and how many of its stack lie below.
     stack: Vec<Stacked>,
+    below: usize,
 }
 
 /// The device told of a trace what cannot be.
@@ -77,8 +80,17 @@ struct Astray;
 
 impl<'a> Slot<'a> {
     pub(super) fn new() -> Self {
-        let (lane, stack) = (Lane::default(), Vec::new());
-        Slot { windows: Windows::new(), trace: None, first: 0, from: 0, last: 0, lane, stack }
+        Slot {
+            windows: Windows::new(),
+            trace: None,
+            first: 0,
+            from: 0,
+            last: 0,
+            lane: Lane::default(),
+            noted: None,
+            stack: Vec::new(),
+            below: 0,
+        }
     }
 
     fn at(&self) -> usize {
@@ -95,11 +107,25 @@ impl<'a> Slot<'a> {
         let done = self.trace.and_then(|(number, trace)| Some((number, self.windows.finished(trace)?)));
         if done.is_some() || self.trace.is_none() {
             self.trace = shared.next();
+            self.noted = None;
             if let Some((_, trace)) = self.trace {
-                self.windows.start(shared.lists.model(), trace);
+                self.start(shared, trace);
             }
         }
         done
+    }
+
+    /// Stands at the start of `trace`, or where its first leg ends if that comes from the anchor: there the rope has no
+    /// direction yet, and no ray that it crosses lies before the free end.
+    fn start(&mut self, shared: &Shared<'_>, trace: &SettledTrace) {
+        let model = shared.lists.model();
+        self.windows.start(model, trace);
+        if let [first, second, ..] = *trace.points()
+            && first == model.anchor()
+        {
+            self.windows.progress.skip(trace, 1, || second.distance_squared(first));
+            shared.job.count(trace.step(1));
+        }
     }
 
     /// Gives it a piece of its trace of at most `most` legs, at place `first` of the half's points, and returns how
@@ -132,9 +158,9 @@ impl<'a> Slot<'a> {
         Lane { point: at(self.at()), last: at(self.last), number: number as u32, ..self.lane }
     }
 
-    /// Its last contacts, if the device does not have them.
-    pub(super) fn take_stack(&mut self) -> Vec<Stacked> {
-        std::mem::take(&mut self.stack)
+    /// Its last contacts, if the device does not have them, and how many of its stack lie below.
+    pub(super) fn take_stack(&mut self) -> (usize, Vec<Stacked>) {
+        (self.below, std::mem::take(&mut self.stack))
     }
 
     /// What its rope turns about.
@@ -158,11 +184,11 @@ impl<'a> Slot<'a> {
             return;
         }
         shared.job.count(trace.step(self.at()) - before);
+        self.lane = Lane { events: 0, farthest: 0.0, ..*lane };
+        self.noted = Some(self.windows.progress.events());
         if lane.does == STOPPED {
             self.go_on(hand, shared, LEGS_OF_DOUBT);
             self.position(hand, shared);
-        } else {
-            self.lane = Lane { events: 0, farthest: 0.0, ..*lane };
         }
     }
 
@@ -211,6 +237,8 @@ impl<'a> Slot<'a> {
 
     /// Takes the trace to the end of its piece on the CPU.
     pub(super) fn finish_piece(&mut self, hand: &mut Hand<'_>, shared: &Shared<'_>) {
+        // What it would have brought is not sent.
+        self.noted = None;
         while self.is_on_its_way() && shared.job.go_on().is_ok() {
             self.go_on(hand, shared, WINDOW);
         }
@@ -239,15 +267,24 @@ impl<'a> Slot<'a> {
         let list = hand.list(pivot, f64::INFINITY, job).ok_or(WINDOW)?;
         let fan = list.fan(model, rope.pivot()).filter(|fan| grid.tells(fan)).ok_or(WINDOW)?;
         let low = fan.locate(trace.points()[progress.at] - rope.pivot()).ok_or(LEGS_OF_DOUBT)?;
+        // The device has the lower ones that are as they were.
+        let lowest = self.lane.deeper as usize;
+        let kept = self.noted.map_or(0, |noted| progress.fewest(noted, lowest + self.lane.depth as usize));
+        let has = kept > lowest && contacts.len() - lowest <= STACK;
+        let (mut deeper, mut below) =
+            if has { (lowest, kept - lowest) } else { (contacts.len().saturating_sub(CONTACTS), 0) };
         self.stack.clear();
-        for (i, contact) in contacts.iter().enumerate().rev().take(CONTACTS) {
+        for (i, contact) in contacts.iter().enumerate().skip(deeper + below).rev() {
             let (prior, from) = match i.checked_sub(1) {
                 Some(i) => (Pivot::at_vertex(contacts[i].vertex), contacts[i].at),
                 None => (model.pivot(None), model.anchor()),
             };
             let way = contact.at - from;
             let list = hand.list(prior, f64::INFINITY, job);
-            let Some(ray) = list.and_then(|list| list.fan(model, from)?.ray_along(way)) else { break };
+            let Some(ray) = list.and_then(|list| list.fan(model, from)?.ray_along(way)) else {
+                (deeper, below) = (i + 1, 0);
+                break;
+            };
             let side = if contact.side == Side::Right { RIGHT } else { 0 };
             self.stack.push(Stacked { vertex: contact.vertex | side, ray: ray as u32, way: grid.way(way) });
         }
@@ -260,11 +297,12 @@ impl<'a> Slot<'a> {
             if on_it && contact.side == Side::Left { fan.before(ray) as u32 } else { ray as u32 }
         });
         let back = |c: &Contact| if c.side == Side::Right { 1.0 } else { -1.0 };
+        (self.below, self.noted) = (below, Some(progress.events()));
         self.lane = Lane {
             pivot: pivot.index() as u32,
             low: low as u32,
-            depth: self.stack.len() as u32,
-            deeper: (contacts.len() - self.stack.len()) as u32,
+            depth: (contacts.len() - deeper) as u32,
+            deeper: deeper as u32,
             way: grid.way(rope.pivot() - rope.prior()),
             back: contacts.last().map_or(0.0, back),
             way_low,

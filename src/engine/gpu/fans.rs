@@ -18,7 +18,8 @@ struct Brought {
     met: Vec<(Pivot, usize, u32)>,
 }
 
-/// Brings the fans of those of `pivots` that are not on the device; false if there was no room for all. They are made on all threads.
+/// Brings the fans of those of `pivots` that are not on the device; false if there was no room for all. They are made
+/// on all threads.
 pub(super) fn bring_fans(pass: &mut DragPass, shared: &Shared<'_>, pivots: BTreeSet<Pivot>) -> bool {
     let heads = pass.heads();
     let has = |pivot: Pivot| heads[pivot.index()].has_fan();

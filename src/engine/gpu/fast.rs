@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::deciding::Hasty;
 use super::resident::NAME;
 use super::rounds;
-use crate::candidates::{LISTS_BUDGET, Lists};
+use crate::candidates::Lists;
 use crate::engine::{Engine, EngineError, Job, Precision, WINDOW};
 use crate::gpu::{AdapterSummary, DECIDE_WGSL, Deciding, Device, GpuError, GpuPass, HALVES, Tuning};
 use crate::rope::TraceRecord;
@@ -44,7 +44,8 @@ impl FastGpu {
         // record does not depend on how far the other traces of its batch go.
         let n = model.vertices().len();
         let lists = Lists::new(model).after(0);
-        let pass = GpuPass::new(device, lists.keys(), n, LISTS_BUDGET, tuning, wgsl)?;
+        let budget = device.memory();
+        let pass = GpuPass::new(device, lists.keys(), n, budget, tuning, wgsl)?;
         Ok(FastGpu { lists, pass, window: WINDOW })
     }
 

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::rounds::{self, Asked, Astray, Player, Shared, Tools};
-use crate::candidates::{Blocks, LISTS_BUDGET, List, Lists, Query};
+use crate::candidates::{Blocks, List, Lists, Query};
 use crate::engine::table::Open;
 use crate::engine::windows::Windows;
 use crate::engine::{Engine, EngineError, EngineKind, Job, Phase, Precision, Promise};
@@ -58,7 +58,8 @@ impl GpuRays {
         device.certify()?;
         let n = model.vertices().len();
         let lists = Lists::new(model).keep_all();
-        let pass = GpuPass::new(device, lists.keys(), n, LISTS_BUDGET, tuning, wgsl)?;
+        let budget = device.memory();
+        let pass = GpuPass::new(device, lists.keys(), n, budget, tuning, wgsl)?;
         Ok(GpuRays { lists, pass })
     }
 

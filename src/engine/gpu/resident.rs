@@ -21,9 +21,6 @@ use crate::trace::{SettledTrace, bounds};
 /// What the engine is called, in either precision.
 pub(super) const NAME: &str = "gpu";
 
-/// How many bytes of points and fans lie on the device at most unless told otherwise.
-const BUDGET: usize = 256 << 20;
-
 /// How many rays a pivot's fan is expected to have.
 const RAYS: usize = 256;
 
@@ -45,7 +42,6 @@ pub struct Gpu {
     lists: Lists,
     grid: Grid,
     device: Device,
-    budget: usize,
     tuning: Tuning,
     wgsl: String,
     /// Made for the first traces, and again for more.
@@ -60,19 +56,19 @@ impl Gpu {
     /// What the device complains of, or what of its f32 exact ropes cannot rely on.
     pub fn new(device: Device, model: Arc<Model>) -> Result<Self, GpuError> {
         let tuning = device.tuning();
-        Self::with(device, Lists::new(model).after(0), BUDGET, tuning, DRAG_WGSL)
+        Self::with(device, Lists::new(model).after(0), tuning, DRAG_WGSL)
     }
 
-    /// An engine with the fans of `lists`, that keeps up to about `budget` bytes of points and fans on the device.
-    /// `tuning` takes the place of what suits the adapter, its queries being traces; `wgsl` that of `drag.wgsl`.
+    /// An engine with the fans of `lists`. `tuning` takes the place of what suits the adapter, its queries being
+    /// traces; `wgsl` that of `drag.wgsl`.
     ///
     /// # Errors
     ///
     /// As [`new`](Self::new).
-    pub fn with(device: Device, lists: Lists, budget: usize, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
+    pub fn with(device: Device, lists: Lists, tuning: Tuning, wgsl: &str) -> Result<Self, GpuError> {
         device.certify()?;
         let grid = Grid::new(*lists.frame());
-        Ok(Gpu { lists, grid, device, budget, tuning, wgsl: wgsl.to_owned(), pass: None })
+        Ok(Gpu { lists, grid, device, tuning, wgsl: wgsl.to_owned(), pass: None })
     }
 
     /// The adapter on which it runs.
@@ -82,10 +78,10 @@ impl Gpu {
 
     /// Makes sure that there is a pass with room enough for so many traces, of so many points in all.
     fn make_room(&mut self, traces: usize, points: usize) -> Result<(), GpuError> {
-        let most = DragPass::most(&self.device, self.budget, self.tuning.queries);
+        let most = DragPass::most(&self.device, self.tuning.queries);
         let model = self.lists.model();
         let room = Room {
-            lanes: traces.div_ceil(HALVES).next_power_of_two().min(most.lanes.max(1)),
+            lanes: traces.div_ceil(HALVES).next_power_of_two().min(most.lanes),
             points: points.div_ceil(HALVES).next_power_of_two().max(CHUNK).min(most.points),
             rays: (RAYS * (model.vertices().len() + 1)).next_power_of_two().min(most.rays),
         };
@@ -241,7 +237,9 @@ impl<'a> Half<'a> {
         records: &mut [Option<TraceRecord>],
     ) -> Result<bool, GpuError> {
         let Half { slots, active, filled, next, .. } = self;
-        let most = PIECE.min(pass.room().points - 1);
+        // So that every slot finds room for a piece, as far as a chunk goes.
+        let fair = pass.room().points / slots.len().min(*next).max(1) / CHUNK * CHUNK;
+        let most = PIECE.min(fair.max(CHUNK) - 1);
         let mut taken = 0;
         let mut with_piece = Vec::with_capacity(slots.len());
         let mut any = false;
@@ -299,7 +297,8 @@ impl<'a> Half<'a> {
             let first = pass.first_point(number);
             for &i in &*active {
                 lanes.push(slots[i].lane(first, i));
-                pass.bring_stack(number, i, &slots[i].take_stack());
+                let (below, stack) = slots[i].take_stack();
+                pass.bring_stack(number, i, below, &stack);
             }
             pass.send(number, lanes);
         });

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::rounds;
-use crate::candidates::{LISTS_BUDGET, Lists};
+use crate::candidates::Lists;
 use crate::engine::table::Open;
 use crate::engine::windows::Windows;
 use crate::engine::{Engine, EngineError, EngineKind, Job, Precision, Promise, WINDOW};
@@ -38,7 +38,8 @@ impl GpuWindows {
     /// What the device complains of, or what of its f32 exact ropes cannot rely on.
     pub fn new(device: Device, model: Arc<Model>) -> Result<Self, GpuError> {
         let tuning = device.tuning();
-        Self::with(device, Lists::new(model), LISTS_BUDGET, tuning, SWEEP_WGSL)
+        let budget = device.memory();
+        Self::with(device, Lists::new(model), budget, tuning, SWEEP_WGSL)
     }
 
     /// An engine that tries the vertices of `lists` and keeps up to `budget` bytes of them on the device. `tuning`

@@ -142,7 +142,7 @@ impl Contender {
     /// Makes the engine for `model`; `None` if it needs a GPU and there is none.
     pub(in crate::lab) fn open(&self, model: Arc<Model>, gear: &Gear) -> Result<Option<Box<dyn Engine>>, EngineError> {
         let options = match self.shape {
-            Shape::Usual(precision) => Options { precision, window: gear.window },
+            Shape::Usual(precision) => Options { precision, window: gear.window, ..Options::default() },
             Shape::FinalOnly => return Ok(Some(Box::new(Funnel::new(model).final_only()))),
             Shape::Furthest => return Ok(Some(Box::new(Note::new(model).furthest()))),
         };

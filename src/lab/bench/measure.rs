@@ -254,7 +254,16 @@ pub(in crate::lab) fn order(count: usize, repeat: usize) -> impl Iterator<Item =
 impl<'w> Lane<'w> {
     fn new(runner: Runner<'w>, work: &Work) -> Result<Self, BenchError> {
         let own = if runner.is_short() { Some(known(work, runner.traces())?) } else { None };
-        Ok(Lane { runner, own, ns: Vec::new(), tests: 0, events: 0, doubts: 0, wrong: None, phases: Default::default() })
+        Ok(Lane {
+            runner,
+            own,
+            ns: Vec::new(),
+            tests: 0,
+            events: 0,
+            doubts: 0,
+            wrong: None,
+            phases: Default::default(),
+        })
     }
 
     /// Runs once more, and compares what comes out with what others gave.

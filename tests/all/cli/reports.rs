@@ -168,6 +168,8 @@ fn adapters_lists_the_software_adapter() {
     assert_eq!(json!(number.parse::<u64>().unwrap()), software["number"]);
     assert_eq!(line[name.len()..].split_whitespace().take(2).collect::<Vec<_>>(), ["software", backend]);
     assert!(line.ends_with(driver), "{line}");
+    let taken = software["memory"]["taken"].as_u64().unwrap();
+    assert!(shown.stdout.contains(&format!("traces take at most {} MiB at once (--gpu-memory)", taken >> 20)));
     let real = adapters.iter().any(|a| ["discrete", "integrated", "virtual"].contains(&a["type"].as_str().unwrap()));
     assert_eq!(shown.stdout.contains("no real GPU"), !real, "{}", shown.stdout);
 }
