@@ -146,10 +146,8 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
     var b = point_at(min(point + 1u, last));
     var wa = vec2<f32>(point_at(point) - origin);
     var wb = vec2<f32>(b - origin);
-    // Which way the rope has turned on this leg, and along what it then pointed, once it has met a ray.
+    // Which way the rope has turned on this leg, once it has met a ray.
     var dir = 0.0;
-    var start = vec2<f32>(0.0, 0.0);
-    var unwrapped = false;
 
     for (var turn_taken = 0u; turn_taken < job.turns; turn_taken++) {
         if does != RUNS || (events + 8u > LOG && dir == 0.0) {
@@ -189,7 +187,6 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
                 point++;
                 wa = wb;
                 dir = 0.0;
-                unwrapped = false;
             } else if !certain || (ray_first && !passes && !wraps) {
                 does = STOPPED;
             } else if ray_first && passes {
@@ -233,14 +230,10 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
             var next_back = -dir;
             var next = vertex;
             var goes_on = met_ray.y;
-            // The last leg doubles back along the rope itself: then it unwraps only half a turn further.
-            let along = vec2<f32>(way.x * start.x, way.y * start.y);
-            let doubles_back = unwrapped && along.x + along.y <= sum_of(along) * SHARE;
-            let room = events < LOG && select(!doubles_back && (depth > 1u || deeper == 0u), depth < STACK, is_wrap);
+            let room = events < LOG && select(depth > 1u || deeper == 0u, depth < STACK, is_wrap);
             if room && !is_wrap {
                 let left = stacks[top - 1u];
                 met = left.y;
-                start = way;
                 vertex = UNWRAP;
                 next = job.anchor;
                 next_back = 0.0;
@@ -265,9 +258,7 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
             let head = pivots[next];
             let next_way_low = select(low_after(goes_on, -next_back, head.y), UNKNOWN, goes_on == UNKNOWN);
             var found = next_way_low;
-            if is_wrap {
-                start = next_way;
-            } else {
+            if !is_wrap {
                 found = select(met, select(met, head.y, met == 0u) - 1u, dir < 0.0);
             }
             if !room || head.y == 0u || found == UNKNOWN {
@@ -282,7 +273,6 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
                     stacks[top] = vec4<u32>(vertex | side, met, bitcast<u32>(next_way.x), bitcast<u32>(next_way.y));
                 }
                 depth = select(depth - 1u, depth + 1u, is_wrap);
-                unwrapped = !is_wrap;
                 pivot = next;
                 fan = head.x;
                 count = head.y;
