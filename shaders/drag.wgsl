@@ -140,12 +140,10 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
     var count = pivots[pivot].y;
     var origin = bitcast<vec2<i32>>(pivots[pivot].zw);
     var low_number = began.low;
-    var high_number = select(low_number + 1u, 0u, low_number + 1u >= count);
     var low = ray_at(fan + low_number);
-    var high = ray_at(fan + high_number);
-    var b = point_at(min(point + 1u, last));
+    var high = ray_at(fan + select(low_number + 1u, 0u, low_number + 1u >= count));
     var wa = vec2<f32>(point_at(point) - origin);
-    var wb = vec2<f32>(b - origin);
+    var wb = vec2<f32>(point_at(min(point + 1u, last)) - origin);
     // Which way the rope has turned on this leg, once it has met a ray.
     var dir = 0.0;
 
@@ -182,47 +180,39 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
             let bound = products * (2.0 * SHARE) + 2.0 * OFF * sum_of(ray) + 2.0 * sums;
             let passes = sum_of(ray) > ENDLESS || beyond < -bound;
             let wraps = !passes && beyond > bound;
-            if goes_on {
-                farthest = max(farthest, wb.x * wb.x + wb.y * wb.y);
-                point++;
-                wa = wb;
-                dir = 0.0;
-            } else if !certain || (ray_first && !passes && !wraps) {
-                does = STOPPED;
-            } else if ray_first && passes {
-                dir = to;
-            } else {
-                dir = to;
-                event = select(2u, 1u, ray_first);
-            }
-            let passed = !goes_on && does == RUNS && event == 0u;
+            let asks = !goes_on && (!certain || (ray_first && !passes && !wraps));
+            let passed = !goes_on && !asks && ray_first && passes;
+            let to_left = to > 0.0;
+            let before = select(low_number, count, low_number == 0u) - 1u;
+            let after = select(low_number + 1u, 0u, low_number + 1u >= count);
+            let after_that = select(after + 1u, 0u, after + 1u >= count);
+            point += select(0u, 1u, goes_on);
             // What comes next: the next point, or the next ray.
-            var place = min(point + 1u, last);
-            if passed {
-                if to > 0.0 {
-                    low_number = high_number;
-                    high_number = select(high_number + 1u, 0u, high_number + 1u >= count);
-                    low = high;
-                } else {
-                    high_number = low_number;
-                    low_number = select(low_number, count, low_number == 0u) - 1u;
-                    high = low;
-                }
-                place = fan + select(low_number, high_number, to > 0.0);
-            }
+            let place = select(min(point + 1u, last), fan + select(before, after_that, to_left), passed);
             let next = data[place];
-            if passed {
-                low = select(low, bitcast<vec2<f32>>(next), to < 0.0);
-                high = select(high, bitcast<vec2<f32>>(next), to > 0.0);
+            let new_ray = bitcast<vec2<f32>>(next);
+            let new_way = vec2<f32>(bitcast<vec2<i32>>(next) - origin);
+            farthest = select(farthest, max(farthest, wb.x * wb.x + wb.y * wb.y), goes_on);
+            wa = select(wa, wb, goes_on);
+            wb = select(wb, new_way, goes_on);
+            dir = select(to, 0.0, goes_on);
+            low_number = select(low_number, select(before, after, to_left), passed);
+            let new_low = select(low, select(new_ray, high, to_left), passed);
+            high = select(high, select(low, new_ray, to_left), passed);
+            low = new_low;
+            if asks {
+                does = STOPPED;
+                dir = 0.0;
             } else if goes_on {
-                b = bitcast<vec2<i32>>(next);
-                wb = vec2<f32>(b - origin);
                 does = select(RUNS, DONE, point >= last);
+            } else if !passed {
+                event = select(2u, 1u, ray_first);
             }
         }
         if event != 0u && does == RUNS {
             let is_wrap = event == 1u;
             let top = number * STACK + depth;
+            let high_number = select(low_number + 1u, 0u, low_number + 1u >= count);
             var met = select(low_number, high_number, dir > 0.0);
             let met_ray = rays[fan + met];
             var vertex = met_ray.x;
@@ -278,12 +268,11 @@ fn drag(@builtin(global_invocation_id) id: vec3<u32>) {
                 count = head.y;
                 let moved = bitcast<vec2<i32>>(head.zw);
                 wa = vec2<f32>(point_at(point) - moved);
-                wb = vec2<f32>(b - moved);
+                wb = vec2<f32>(point_at(min(point + 1u, last)) - moved);
                 origin = moved;
                 low_number = found;
-                high_number = select(found + 1u, 0u, found + 1u >= head.y);
                 low = ray_at(head.x + low_number);
-                high = ray_at(head.x + high_number);
+                high = ray_at(head.x + select(found + 1u, 0u, found + 1u >= head.y));
                 way = next_way;
                 back = next_back;
                 way_low = next_way_low;

@@ -23,7 +23,7 @@ pub const CHUNK: usize = 64;
 const POINT: usize = size_of::<[i32; 2]>();
 
 /// After how many looks of a lane events are seen to: lanes that have met one wait for the others.
-const LOOKS: u32 = 32;
+const LOOKS: u32 = 16;
 
 /// How many looks a lane takes in a round at most: a round takes some milliseconds.
 const MOST_LOOKS: u32 = 1 << 13;

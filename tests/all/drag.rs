@@ -98,17 +98,19 @@ fn share_decided(engine: &mut Gpu, traces: &[SettledTrace]) -> f64 {
     1.0 - job.doubts() as f64 / job.steps() as f64
 }
 
+/// Over some million legs near lines; `TAUTLINE_SCENES=220` in the environment makes that 10^7.
 #[test]
 fn no_sign_that_is_certain_is_wrong() {
+    let scenes = std::env::var("TAUTLINE_SCENES").map_or(20, |count| count.parse().expect("a number of scenes"));
     let mut steps = 0;
-    for (model, traces) in degenerate(20, 128, 400) {
+    for (model, traces) in degenerate(scenes, 128, 400) {
         let truth = truth(&model, &traces);
         assert!(truth.iter().map(|r| r.events.len()).sum::<usize>() > 1000, "little happens");
         let mut engine = engine(&model, PLENTY, 128, DRAG_WGSL);
         assert_eq!(differs(&mut engine, &traces, &truth), None);
         steps += traces.iter().filter(|t| !t.breaks_rules()).map(SettledTrace::steps).sum::<usize>();
     }
-    assert!(steps > 900_000, "{steps}");
+    assert!(steps > 45_000 * scenes, "{steps}");
 }
 
 #[test]
@@ -133,7 +135,7 @@ fn a_bound_that_is_too_small_is_found_out() {
         ("var next_back = -dir;", "var next_back = dir;"),
         ("let last = goes_on >> 1u;", "let last = goes_on / 2u + 1u;"),
         ("(goes_on & 1u) == 1u && dir > 0.0", "false"),
-        ("farthest = max(farthest, wb.x * wb.x + wb.y * wb.y)", "farthest = wb.x * wb.x"),
+        ("max(farthest, wb.x * wb.x + wb.y * wb.y)", "wb.x * wb.x"),
     ];
     for (right, wrong) in changes {
         assert_eq!(DRAG_WGSL.matches(right).count(), 1, "{right:?} stands in the shader once");
@@ -253,7 +255,7 @@ fn a_device_that_tells_what_cannot_be_is_found_out() {
     let traces = settled_walks(&model, Walker { step: 0.3, steps: 100, seed: 9 }, 50);
     let changes = [
         ("events++;", "events = 77u;"),
-        ("point++;", "point += 1000000u;"),
+        ("point += select(0u, 1u, goes_on);", "point += select(0u, 1000000u, goes_on);"),
         ("depth = select(depth - 1u, depth + 1u, is_wrap);", ""),
         ("pivot = next;", "pivot = 0x7fffffffu;"),
         ("vec4<u32>(point, vertex, bit", "vec4<u32>(point, 12345678u, bit"),
