@@ -2,7 +2,7 @@
 
 use super::chosen::Chosen;
 use super::opened::Study;
-use super::run::RunError;
+use super::run_error::RunError;
 use crate::trace::SettledTrace;
 
 /// About how many points are held at a time.

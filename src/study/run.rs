@@ -1,40 +1,22 @@
 //! Running a study: drawing, evaluating and tallying block after block.
 
-use std::ops::ControlFlow::{self, Break, Continue};
+use std::ops::ControlFlow::{Break, Continue};
 use std::ops::Range;
 use std::sync::Mutex;
-use std::sync::mpsc::sync_channel;
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use rayon::prelude::*;
 
+use super::groups::{Group, Room, groups};
 use super::moments::Moments;
-use super::opened::{Source, Study};
-use super::plan_error::PlanError;
+use super::opened::Study;
+use super::run_error::RunError;
 use super::shard::Shard;
 use super::state::{State, Stopped};
 use super::tally::{Block, Counts, Merge};
-use crate::engine::{Engine, EngineError, Job};
+use crate::engine::{Engine, Job};
 use crate::rope::TraceRecord;
 use crate::trace::SettledTrace;
-
-/// About how many points the traces have together that are drawn at once: 64 MB of them.
-const POINTS: u64 = 1 << 22;
-
-/// Why a study could not go on. What was done before is in its state.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError<E> {
-    /// The traces cannot be had.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// The ropes cannot be evaluated, or the job was stopped.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// The caller had enough.
-    #[error(transparent)]
-    Caller(E),
-}
 
 /// How long the parts of a run took, in seconds. Drawing goes on beside the rest.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -47,14 +29,6 @@ pub struct Spent {
     pub evaluated: f64,
     /// Counting.
     pub tallied: f64,
-}
-
-/// Traces that are worked on at once.
-struct Group {
-    /// Their places among the shard's traces.
-    places: Range<u64>,
-    traces: Vec<SettledTrace>,
-    drawn: f64,
 }
 
 /// What a group's traces of one block have come to.
@@ -90,17 +64,17 @@ pub fn run<E: Send>(
     job: &Job,
     after: impl FnMut(&mut State, Vec<TraceRecord>, usize) -> Result<(), E>,
 ) -> Result<Spent, RunError<E>> {
-    let size = group_size(study, engines);
-    in_groups(study, engines, state, job, size, after)
+    let room = Room::growing(study, engines);
+    in_groups(study, engines, state, job, room, after)
 }
 
-/// The same with groups of at most `size` traces.
+/// The same with groups of at most as many traces as there is room for.
 fn in_groups<E: Send>(
     study: &Study,
     engines: &mut [Box<dyn Engine>],
     state: &Mutex<State>,
     job: &Job,
-    size: u64,
+    room: Room,
     mut after: impl FnMut(&mut State, Vec<TraceRecord>, usize) -> Result<(), E>,
 ) -> Result<Spent, RunError<E>> {
     let mut spent = Spent::default();
@@ -116,7 +90,7 @@ fn in_groups<E: Send>(
     };
     let all = shard.count(study.plan().blocks());
     let places = first..study.places(shard);
-    groups(study, engines, (shard, places, size), job, |group, records, [waited, evaluated]| {
+    groups(study, engines, (shard, places), &room, job, |group, records, [waited, evaluated]| {
         let clock = Instant::now();
         let tallied = tally(study, shard, &group, &records, open.take());
         let mut state = state.lock().expect("nobody panicked with the state");
@@ -195,52 +169,9 @@ pub fn run_again<E: Send>(
     mut each: impl FnMut(Vec<TraceRecord>) -> Result<(), E>,
 ) -> Result<(), RunError<E>> {
     assert!(places.end <= study.places(shard), "the shard has that many traces");
-    let size = group_size(study, engines);
-    groups(study, engines, (shard, places, size), job, |_, records, _| {
+    let room = Room::growing(study, engines);
+    groups(study, engines, (shard, places), &room, job, |_, records, _| {
         each(records).map_err(RunError::Caller).map(|()| Continue(()))
-    })
-}
-
-/// Draws and evaluates the traces at these places, in groups of at most that size. The next group is drawn while one is
-/// evaluated and given to `each`, with how many seconds were waited for it and how long evaluating took.
-fn groups<E: Send>(
-    study: &Study,
-    engines: &mut [Box<dyn Engine>],
-    (shard, places, size): (Shard, Range<u64>, u64),
-    job: &Job,
-    mut each: impl FnMut(Group, Vec<TraceRecord>, [f64; 2]) -> Result<ControlFlow<()>, RunError<E>>,
-) -> Result<(), RunError<E>> {
-    assert_eq!(engines.len(), study.models().len(), "each anchor has its engine");
-    thread::scope(|scope| {
-        let (ready, waiting) = sync_channel::<Result<Group, RunError<E>>>(0);
-        scope.spawn(move || {
-            let Some((_, numbers)) = study.numbers(shard, places.clone()).next() else { return };
-            let mut drawing = match study.source(numbers.start) {
-                Ok(source) => Drawing { study, shard, source, size, pace: 1 },
-                Err(error) => return drop(ready.send(Err(error.into()))),
-            };
-            let mut start = places.start;
-            while start < places.end {
-                let group = drawing.next(start..places.end, job);
-                start = group.as_ref().map_or(places.end, |group| group.places.end);
-                if ready.send(group).is_err() {
-                    return;
-                }
-            }
-        });
-        let mut clock = Instant::now();
-        let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
-        for group in waiting {
-            let mut group = group?;
-            let waited = lap();
-            let records = evaluate(study, engines, &mut group.traces, job)?;
-            let evaluated = lap();
-            if each(group, records, [waited, evaluated])?.is_break() {
-                break;
-            }
-            lap();
-        }
-        Ok(())
     })
 }
 
@@ -277,85 +208,6 @@ fn tally(
         (index, part.len(), tallied)
     };
     parts.into_par_iter().map(count).collect()
-}
-
-/// How many traces are worked on at once: enough for the engines, whole blocks if that can be, and not too many points.
-fn group_size(study: &Study, engines: &[Box<dyn Engine>]) -> u64 {
-    let batch = engines.iter().map(|engine| engine.batch()).max().unwrap_or(1);
-    let block = u64::from(study.plan().run.block);
-    let steps = study.plan().walk.steps().map_or(1024, u64::from);
-    let most = (POINTS / (steps + 1)).max(1);
-    let whole = (batch as u64).div_ceil(block).min(most / block) * block;
-    if whole > 0 { whole } else { most }
-}
-
-/// After that time a group is closed though there is room for more, so that what was drawn is evaluated and saved in
-/// time.
-const LONGEST: Duration = Duration::from_secs(1);
-
-/// About how long it takes to draw the traces between two looks at the clock.
-const LAP: Duration = Duration::from_millis(50);
-
-/// What draws traces, group after group.
-struct Drawing<'s> {
-    study: &'s Study,
-    shard: Shard,
-    source: Source<'s>,
-    /// How many traces a group has at the most.
-    size: u64,
-    /// How many are drawn between two looks at the clock.
-    pace: u64,
-}
-
-impl Drawing<'_> {
-    /// The first of the traces at these places, as many as are drawn in time. A group that begins within a block ends
-    /// with it.
-    fn next<E>(&mut self, places: Range<u64>, job: &Job) -> Result<Group, RunError<E>> {
-        let clock = Instant::now();
-        let block = u64::from(self.study.plan().run.block);
-        let start = places.start;
-        let most = if start.is_multiple_of(block) { self.size } else { self.size.min(block - start % block) };
-        let end = places.end.min(start + most);
-        let mut group = Group { places: start..start, traces: Vec::new(), drawn: 0.0 };
-        while group.places.end < end && clock.elapsed() <= LONGEST {
-            job.go_on()?;
-            let lap = Instant::now();
-            let at = group.places.end;
-            let some = at..end.min(at + self.pace);
-            let Some((_, numbers)) = self.study.numbers(self.shard, some).next() else { break };
-            group.places.end += numbers.end - numbers.start;
-            group.traces.extend(self.source.take(numbers)?);
-            self.pace = if lap.elapsed() < LAP { (2 * self.pace).min(self.size) } else { (self.pace / 2).max(1) };
-        }
-        group.drawn = clock.elapsed().as_secs_f64();
-        Ok(group)
-    }
-}
-
-/// The records of all traces, in their order. Each is evaluated by the engine of its anchor.
-fn evaluate(
-    study: &Study,
-    engines: &mut [Box<dyn Engine>],
-    traces: &mut Vec<SettledTrace>,
-    job: &Job,
-) -> Result<Vec<TraceRecord>, EngineError> {
-    if let [engine] = engines {
-        return engine.evaluate(traces, job);
-    }
-    let mut parts: Vec<Vec<(usize, SettledTrace)>> = engines.iter().map(|_| Vec::new()).collect();
-    for (i, trace) in traces.drain(..).enumerate() {
-        parts[study.tallies.setting.anchor(trace.id())].push((i, trace));
-    }
-    let mut all = Vec::new();
-    for (engine, part) in engines.iter_mut().zip(parts) {
-        let (places, own): (Vec<usize>, Vec<SettledTrace>) = part.into_iter().unzip();
-        let records = engine.evaluate(&own, job)?;
-        all.extend(places.into_iter().zip(own).zip(records));
-    }
-    all.sort_unstable_by_key(|((place, _), _)| *place);
-    let (placed, records): (Vec<(usize, SettledTrace)>, Vec<TraceRecord>) = all.into_iter().unzip();
-    traces.extend(placed.into_iter().map(|(_, trace)| trace));
-    Ok(records)
 }
 
 /// Before that many traces no study is certain enough: of fewer, errors are not known well.

@@ -35,7 +35,7 @@ fn stopped_after_each(study: &Study, shard: Shard, size: u64) -> (State, Vec<Tra
             all.extend(records.into_iter().take(added));
             Err(())
         };
-        let ended = in_groups(study, &mut engines(study), &state, &Job::new(), size, stop);
+        let ended = in_groups(study, &mut engines(study), &state, &Job::new(), Room::between(size, size), stop);
         let state = state.into_inner().unwrap();
         if let Ok(spent) = ended {
             assert_eq!(spent, Spent::default(), "nothing was left to do");
@@ -85,6 +85,44 @@ fn ends_the_same_if_stopped(study: Study) {
         shards[2].1.iter().map(|record| record.trace).collect::<Vec<_>>(),
         Vec::from_iter((14..21).chain(35..40))
     );
+}
+
+/// An engine that remembers how many traces it was given at once.
+struct Watched(Cpu, std::sync::Arc<Mutex<Vec<usize>>>);
+
+impl Engine for Watched {
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+
+    fn evaluate(&mut self, traces: &[SettledTrace], job: &Job) -> Result<Vec<TraceRecord>, crate::engine::EngineError> {
+        self.1.lock().unwrap().push(traces.len());
+        self.0.evaluate(traces, job)
+    }
+}
+
+#[test]
+fn what_a_stop_can_lose_is_little_from_the_first_trace_on() {
+    let text = STUDY.replace("anchor = { sample = 2 }", "").replace("traces = 40", "traces = 4000");
+    let study = Study::open(Plan::parse(&text).unwrap(), Path::new("")).unwrap();
+    let given = std::sync::Arc::<Mutex<Vec<usize>>>::default();
+    let watched = Box::new(Watched(Cpu::new(study.models()[0].clone()), given.clone()));
+    let state = Mutex::new(State::new(&study, Shard::WHOLE));
+    let mut places = Vec::new();
+    let after = |state: &mut State, _: Vec<TraceRecord>, _: usize| {
+        places.push(state.place(&study));
+        Ok::<(), ()>(())
+    };
+    run(&study, &mut [watched], &state, &Job::new(), after).unwrap();
+    let given = given.lock().unwrap().clone();
+    // The engine could take 8192 at once. The first have some 65,536 steps together, in whole blocks.
+    assert_eq!(given[0], 65_536 / 61 / 7 * 7);
+    // Whatever has been evaluated is in the state at once.
+    let evaluated = given.iter().scan(0, |sum, &count| {
+        *sum += count as u64;
+        Some(*sum)
+    });
+    assert_eq!(places, Vec::from_iter(evaluated));
 }
 
 #[test]

@@ -167,7 +167,7 @@ fn a_study_ends_when_it_is_certain_enough() {
 }
 
 /// Trace and length of each row of `traces.parquet`.
-fn rows(folder: &Folder, run: &str) -> Vec<(u64, f64)> {
+pub(super) fn rows(folder: &Folder, run: &str) -> Vec<(u64, f64)> {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::RowAccessor;
     assert!(!folder.path(run).join("traces").exists(), "the parts are still there");

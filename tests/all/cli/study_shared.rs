@@ -5,6 +5,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use super::study::rows;
 use super::{Finished, Folder};
 
 /// Two anchors, 24 blocks, the last one smaller than the others.
@@ -100,6 +101,38 @@ fn what_schedulers_send_saves_and_stops() {
     wait_for(&folder, &mut child, "b");
     send("USR1", &child);
     assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+/// Small blocks and many steps, stopped again and again in the first moments: what is saved never becomes less, and the
+/// end is that of one run.
+#[test]
+fn a_study_that_is_stopped_at_any_time_goes_forward() {
+    let folder = Folder::new();
+    let text = STUDY.replace("steps = 60", "steps = 1000").replace("block = 40", "block = 3");
+    folder.write("s.toml", text.replace("[outputs]", "[outputs]\ntraces = true"));
+    let run = "study run s.toml --engine cpu --resume --out";
+    folder.done(&format!("{run} truth"));
+    let (mut before, mut round) = (0, 0);
+    loop {
+        let mut child = start(&folder, &format!("{run} a"));
+        // The first is stopped as soon as it can be, the others later and later.
+        if round == 0 {
+            wait_for(&folder, &mut child, "a");
+        }
+        sleep(Duration::from_millis(100 * round));
+        send("TERM", &child);
+        let finished: Finished = child.wait_with_output().unwrap().into();
+        if finished.code == Some(0) {
+            break;
+        }
+        finished.has_failed(4, "a stop", &["stopped"]);
+        let saved = finished.stderr.split_once("stopped; ").and_then(|(_, rest)| rest.split_once(" of 950 traces"));
+        let saved = saved.map_or(before, |(saved, _)| saved.parse::<u64>().unwrap());
+        assert!(saved >= before, "{saved} after {before}");
+        (before, round) = (saved, round + 1);
+    }
+    assert!(answer(&folder, "a") == answer(&folder, "truth") && before > 0, "{before}");
+    assert!(rows(&folder, "a") == rows(&folder, "truth"));
 }
 
 #[test]
