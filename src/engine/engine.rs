@@ -6,9 +6,9 @@ use super::precision::Precision;
 use crate::rope::{EndsRecord, TraceRecord};
 use crate::trace::{SettledEnds, SettledTrace};
 
-/// How many traces engines without a device can make use of at once: enough that all threads end at about the same
-/// time.
-const BATCH: usize = 8192;
+/// How many traces engines without a device can make use of at once, for each thread: enough that all end at about the
+/// same time, and no more than memory can be used for again and again.
+const BATCH: usize = 512;
 
 /// Turns batches of independent traces into records, for the model that the engine was made for.
 pub trait Engine: Send {
@@ -49,7 +49,7 @@ pub trait Engine: Send {
     /// How many traces, at the most, it can make use of in one evaluation: with fewer it may be slower, with more it is
     /// no faster.
     fn batch(&self) -> usize {
-        BATCH
+        BATCH * rayon::current_num_threads()
     }
 
     /// How many of the model's vertices it tries, that is, at how many a rope can turn within reach of the traces

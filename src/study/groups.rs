@@ -28,8 +28,9 @@ pub(super) struct Group {
     pub drawn: f64,
 }
 
-/// Draws and evaluates the traces at these places, in groups of at most as many as there is room for. The next group is drawn while one is
-/// evaluated and given to `each`, with how many seconds were waited for it and how long evaluating took.
+/// Draws and evaluates the traces at these places, in groups of at most as many as there is room for. The next group is
+/// drawn while one is evaluated and given to `each`, with how many seconds were waited for it and how long evaluating
+/// took.
 pub(super) fn groups<E: Send>(
     study: &Study,
     engines: &mut [Box<dyn Engine>],
@@ -78,8 +79,9 @@ pub(super) fn groups<E: Send>(
 pub(super) struct Room {
     /// Enough for the engines, whole blocks if that can be, and not too many points.
     most: u64,
-    /// How many there are at present.
+    /// How many there are at present: whole blocks, if there is one.
     now: AtomicU64,
+    block: u64,
     /// How many the last group had, and how many of them were evaluated in a second.
     last: Mutex<(u64, f64)>,
 }
@@ -98,18 +100,13 @@ impl Room {
         let most = (POINTS / (steps + 1)).max(1);
         let whole = (batch as u64).div_ceil(block).min(most / block) * block;
         let most = if whole > 0 { whole } else { most };
-        Room::between((FIRST / (steps + 1)).max(1), most)
+        let first = whole_blocks((FIRST / (steps + 1)).max(1), block);
+        Room { block, ..Room::between(first, most) }
     }
 
-    /// Room for so many at first, and later at the most.
+    /// Room for so many at first, and later at the most, whatever blocks there are.
     pub(super) fn between(first: u64, most: u64) -> Self {
-        Room { most, now: AtomicU64::new(first.min(most)), last: Mutex::default() }
-    }
-
-    /// For how many there is room at present: of more than a block, whole ones.
-    fn now(&self, block: u64) -> u64 {
-        let now = self.now.load(Relaxed);
-        if now < block { now } else { now - now % block }
+        Room { most, now: AtomicU64::new(first.min(most)), block: 1, last: Mutex::default() }
     }
 
     /// Makes more room after a group of so many traces, if it took less than [`LONGEST`] or more were evaluated in a
@@ -120,9 +117,14 @@ impl Room {
             std::mem::replace(&mut *self.last.lock().unwrap_or_else(PoisonError::into_inner), (traces, rate));
         let is_gain = traces > before && before > 0 && rate > 1.5 * slower;
         let growth = (LONGEST.as_secs_f64() / seconds.max(1e-9)).clamp(if is_gain { 2.0 } else { 1.0 }, GROWTH);
-        let room = ((traces as f64 * growth) as u64).min(self.most);
+        let room = whole_blocks((traces as f64 * growth) as u64, self.block).min(self.most);
         self.now.fetch_max(room, Relaxed);
     }
+}
+
+/// Of more traces than a block has, those of whole ones.
+fn whole_blocks(traces: u64, block: u64) -> u64 {
+    if traces < block { traces } else { traces - traces % block }
 }
 
 /// After that time a group is closed though there is room for more, so that what was drawn is evaluated and saved in
@@ -149,7 +151,7 @@ impl Drawing<'_> {
         let clock = Instant::now();
         let block = u64::from(self.study.plan().run.block);
         let start = places.start;
-        let size = self.room.now(block);
+        let size = self.room.now.load(Relaxed);
         let most = if start.is_multiple_of(block) { size } else { size.min(block - start % block) };
         let end = places.end.min(start + most);
         let mut group = Group { places: start..start, traces: Vec::new(), drawn: 0.0 };
@@ -201,9 +203,9 @@ mod tests {
     /// How much room there is after each of so many groups, if that many traces take so many seconds.
     fn rooms(room: &Room, groups: usize, seconds: impl Fn(u64) -> f64) -> Vec<u64> {
         let after = |_| {
-            let traces = room.now(1);
+            let traces = room.now.load(Relaxed);
             room.took(traces, seconds(traces));
-            room.now(1)
+            room.now.load(Relaxed)
         };
         (0..groups).map(after).collect()
     }
@@ -227,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_group_that_is_larger_than_a_block_has_whole_ones() {
-        let room = Room::between(25, 60);
-        assert_eq!([room.now(40), room.now(25), room.now(10), room.now(1)], [25, 25, 20, 25]);
+        let room = Room { block: 30, ..Room::between(10, 300) };
+        assert_eq!(rooms(&room, 4, |n| n as f64 / 100.0), [80 / 30 * 30, 90, 90, 90]);
     }
 }
