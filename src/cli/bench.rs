@@ -9,6 +9,7 @@ use tautline::lab::bench::{
     BenchError, CONTENDERS, Contender, Document, Plan, Report, Setting, Stage, Sweep, measure_all,
 };
 
+use super::engine::adapter_name;
 use super::failure::Failure;
 use super::measured::{SceneArgs, device, length, measured};
 use super::progress::Runs;
@@ -53,7 +54,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ENGINE", value_parser = measured(CONTENDERS.map(|c| c.engine)))]
     engine: Vec<&'static EngineKind>,
     /// Which GPU: part of its name, its number in `tautline adapters`, or `software`
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = adapter_name)]
     adapter: Option<String>,
     /// The most steps that one query covers
     #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]

@@ -20,7 +20,7 @@ pub(crate) struct EngineArgs {
     #[arg(long, value_parser = names(|_| false), default_value = AUTO)]
     engine: EngineName,
     /// Which GPU: part of its name, its number in `tautline adapters`, or `software`; implies `--engine gpu`
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = adapter_name)]
     adapter: Option<String>,
     /// Whether exact signs decide, or f32 alone; `fast` implies `--engine gpu` [default: certified]
     #[arg(long, value_enum, value_name = "PRECISION")]
@@ -122,7 +122,7 @@ impl EngineArgs {
         };
         if let Why::NoRealGpu(error) = &opened.why {
             let why = match error {
-                EngineError::Gpu(GpuError::NoAdapter { .. }) => {
+                EngineError::Gpu(GpuError::NoAdapter { .. } | GpuError::NoDeviceFile) => {
                     let faults = driver_faults().into_iter().map(|fault| format!(", and {fault}"));
                     "there is no real GPU here".to_owned() + &faults.collect::<String>()
                 }
@@ -138,6 +138,16 @@ impl EngineArgs {
             }
         }
         Ok(opened)
+    }
+}
+
+/// What names an adapter: nothing at all would be in every name.
+pub(super) fn adapter_name(text: &str) -> Result<String, String> {
+    match text.trim() {
+        "" => {
+            Err("give part of an adapter's name or its number, as `tautline adapters` lists them, or software".into())
+        }
+        _ => Ok(text.to_owned()),
     }
 }
 

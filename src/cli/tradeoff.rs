@@ -12,6 +12,7 @@ use tautline::lab::bench::{BenchScene, Gear, Plan};
 use tautline::lab::tradeoff::{Document, Method, Report, Setting, Tradeoff, TradeoffError, Wanted, Work, tradeoff};
 use tautline::picture;
 
+use super::engine::adapter_name;
 use super::failure::Failure;
 use super::look::Target;
 use super::measured::{SceneArgs, device, length, measured};
@@ -65,7 +66,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ENGINE", value_parser = measured(Method::ALL.map(|m| m.engine())))]
     engine: Vec<&'static EngineKind>,
     /// Which GPU: part of its name, its number in `tautline adapters`, or `software`
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = adapter_name)]
     adapter: Option<String>,
     /// How often every method runs at every setting
     #[arg(

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use super::adapter::{AdapterChoice, AdapterSummary, enumerate};
 use super::arithmetic::Arithmetic;
 use super::buffers::{PAGE_BYTES, PATIENCE};
-use super::{GpuError, Tuning, drivers};
+use super::{GpuError, Tuning, drivers, nodes};
 
 struct Complaint {
     words: String,
@@ -35,8 +35,12 @@ impl Device {
     ///
     /// # Errors
     ///
-    /// [`GpuError::NoAdapter`] with a list of what there is, or the reason why the adapter cannot be used.
+    /// [`GpuError::NoAdapter`] with a list of what there is, or the reason why the adapter cannot be used. Where it is
+    /// to be a real GPU and none can be there, [`GpuError::NoDeviceFile`], without a look at what there is.
     pub fn open(choice: &AdapterChoice) -> Result<Device, GpuError> {
+        if *choice == AdapterChoice::Real && !nodes::may_be_real() {
+            return Err(GpuError::NoDeviceFile);
+        }
         let all = enumerate();
         let found: Vec<AdapterSummary> = all.iter().map(|(summary, _)| summary.clone()).collect();
         let fitting = choice.fitting(&found);

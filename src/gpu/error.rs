@@ -15,6 +15,9 @@ pub enum GpuError {
         /// What the environment has to do with it, in sentences; empty if nothing.
         advice: String,
     },
+    /// No real GPU can be here.
+    #[error("there is no real GPU here: all Vulkan drivers that are installed need a device in /dev that is not there")]
+    NoDeviceFile,
     /// The adapter lacks something that the pass needs.
     #[error("the adapter {adapter} cannot be used: {why}")]
     Unfit {
@@ -46,7 +49,7 @@ impl GpuError {
     /// an engine without one. `false` for a device that failed on the way, which may do another time.
     pub fn is_unfit(&self) -> bool {
         match self {
-            GpuError::NoAdapter { .. } | GpuError::Unfit { .. } => true,
+            GpuError::NoAdapter { .. } | GpuError::NoDeviceFile | GpuError::Unfit { .. } => true,
             GpuError::Timeout { .. } | GpuError::Failed { .. } => false,
         }
     }

@@ -9,6 +9,7 @@ mod drivers;
 mod error;
 mod kernel;
 mod lane;
+mod nodes;
 mod once;
 mod pages;
 mod pass;

@@ -1,6 +1,6 @@
 //! Arguments that do not fit together, and outputs that cannot be.
 
-use super::{EVAL, Folder};
+use super::{EVAL, Finished, Folder};
 
 #[test]
 fn scene_and_traces_go_together() {
@@ -69,6 +69,17 @@ fn an_adapter_that_is_not_there_is_answered_with_those_that_are() {
     let parts = ["\"NoSuchThing\"", there, "software", "apt-get install mesa-vulkan-drivers", "dnf install"];
     for engine in ["", "--engine gpu", "--engine auto"] {
         folder.refused(3, &format!("{EVAL} --adapter NoSuchThing {engine}"), &parts);
+    }
+}
+
+#[test]
+fn an_adapter_without_a_name_is_none() {
+    let folder = Folder::hand_made();
+    for command in [EVAL, "study run", "bench", "tradeoff"] {
+        for name in ["", " "] {
+            let mut asked = folder.command(command);
+            Finished::of(asked.args(["--adapter", name])).has_failed(2, command, &["--adapter", "`tautline adapters`"]);
+        }
     }
 }
 
