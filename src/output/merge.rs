@@ -15,6 +15,7 @@ use super::tables::Table;
 use super::{WholeFile, WriteError};
 use crate::caught::caught;
 use crate::scene::Scene;
+use crate::words::plainly;
 
 /// How many rows of each file are held, and written, at a time.
 const ROWS: usize = 1 << 13;
@@ -22,15 +23,16 @@ const ROWS: usize = 1 << 13;
 /// Writes the rows of the Parquet files at `from`, each as [`ResultWriter`](super::ResultWriter) writes it and in the
 /// order of its traces, to one such file at `to`, in the order of all traces, all in `scene`; `notes` go into its
 /// metadata. The same rows give the same bytes, however they are shared out. O(rows) in time for few files; in memory a
-/// few thousand rows of those whose traces overlap. Where the study ended early, `rows` are the first of those in the
-/// files, and what lies behind them `is_cut`.
+/// few thousand rows of those whose traces overlap. Of each file no more than so many of the first rows are taken as
+/// are named with it. Where the study ended early, `rows` are the first of those in the files, and what lies behind
+/// them `is_cut`.
 ///
 /// # Errors
 ///
 /// A file that cannot be read or whose columns are others, a trace that is there twice, fewer `rows` than are wanted
 /// or, if nothing is cut, more; and those of [`check_output`](super::check_output).
 pub fn merge_results(
-    from: &[PathBuf],
+    from: &[(PathBuf, u64)],
     to: &Path,
     scene: &Scene,
     notes: &[(&str, String)],
@@ -42,8 +44,8 @@ pub fn merge_results(
     notes.iter().for_each(|(key, value)| table.note(key, value));
     // Files are opened when it is their turn, so that there may be more of them than can be open at a time.
     let mut waiting = Vec::new();
-    for path in from {
-        waiting.extend(Source::open(path, &table, 1)?.map(|source| (source.next(), path)));
+    for (path, most) in from {
+        waiting.extend(Source::open(path, *most, &table, 1)?.map(|source| (source.next(), path, *most)));
     }
     waiting.sort_unstable_by(|a, b| b.cmp(a));
     let mut open: Vec<Source> = Vec::new();
@@ -54,10 +56,10 @@ pub fn merge_results(
     while !(is_cut && written == rows) {
         // The source whose next trace is the first, and how far it goes before it is another's turn.
         let first = (0..open.len()).min_by_key(|&i| open[i].next());
-        if let Some(&(next, path)) = waiting.last()
+        if let Some(&(next, path, most)) = waiting.last()
             && first.is_none_or(|first| next <= open[first].next())
         {
-            open.extend(Source::open(path, &table, ROWS)?);
+            open.extend(Source::open(path, most, &table, ROWS)?);
             waiting.pop();
             continue;
         }
@@ -82,7 +84,10 @@ pub fn merge_results(
         }
     }
     if written != rows {
-        return Err(WriteError::source(to, format!("its parts have {written} rows instead of {rows}")));
+        return Err(WriteError::source(
+            to,
+            format!("its parts have {} instead of {rows}", plainly(written, "row", "rows")),
+        ));
     }
     chunks.finish_buffered_batch().map_err(failed)?;
     while let Some(rows) = chunks.next_completed_batch() {
@@ -98,11 +103,13 @@ struct Source {
     rows: RecordBatch,
     /// The first row that was not written yet.
     at: usize,
+    /// How many rows behind these are to be taken.
+    left: u64,
 }
 
 impl Source {
-    /// `None` for a file without rows. So many of them are read at a time.
-    fn open(path: &Path, like: &Table<ResultColumns>, rows: usize) -> Result<Option<Self>, WriteError> {
+    /// `None` for a file without rows. `most` of them are taken, and so many read at a time.
+    fn open(path: &Path, most: u64, like: &Table<ResultColumns>, rows: usize) -> Result<Option<Self>, WriteError> {
         let fault = |e: &dyn std::fmt::Display| WriteError::source(path, e);
         let file = File::open(path).map_err(|e| fault(&e))?;
         let open = || {
@@ -114,7 +121,7 @@ impl Source {
         };
         let batches = caught(open).unwrap_or_else(|panic| Err(fault(&panic)))?;
         let rows = RecordBatch::new_empty(like.schema());
-        let mut source = Source { path: path.to_owned(), batches, rows, at: 0 };
+        let mut source = Source { path: path.to_owned(), batches, rows, at: 0, left: most };
         Ok(source.refill()?.then_some(source))
     }
 
@@ -128,11 +135,16 @@ impl Source {
         while self.at == self.rows.num_rows() {
             let last = self.at.checked_sub(1).map(|last| traces(&self.rows)[last]);
             let fault = |e: &dyn std::fmt::Display| WriteError::source(&self.path, e);
+            if self.left == 0 {
+                return Ok(false);
+            }
             match caught(|| self.batches.next()).map_err(|panic| fault(&panic))? {
                 None => return Ok(false),
                 Some(rows) => self.rows = rows.map_err(|e| fault(&e))?,
             }
-            self.at = 0;
+            let count = self.left.min(self.rows.num_rows() as u64);
+            self.rows = self.rows.slice(0, count as usize);
+            (self.at, self.left) = (0, self.left - count);
             let sorted = last.iter().chain(traces(&self.rows)).is_sorted_by(|a, b| a < b);
             if !sorted || self.rows.column(0).null_count() > 0 {
                 return Err(WriteError::source(&self.path, "its rows are not in the order of their traces"));
@@ -178,6 +190,11 @@ mod tests {
         path.to_owned()
     }
 
+    /// All rows of each.
+    fn all_of<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Vec<(PathBuf, u64)> {
+        paths.into_iter().map(|path| (path.clone(), u64::MAX)).collect()
+    }
+
     fn rows(path: &Path) -> RecordBatch {
         let builder = ParquetRecordBatchReaderBuilder::try_new(File::open(path).unwrap()).unwrap();
         let mut batches = builder.with_batch_size(1 << 30).build().unwrap();
@@ -196,29 +213,26 @@ mod tests {
         let parts: Vec<PathBuf> =
             (0..3).map(|k| written(&at(&format!("{k}.parquet")), (0..40_000).filter(block(k)))).collect();
         let none = written(&at("none.parquet"), 0..0);
-        let all = [&parts[2], &none, &parts[0], &parts[1]].map(Clone::clone);
+        let all = all_of([&parts[2], &none, &parts[0], &parts[1]]);
         merge_results(&all, &at("merged.parquet"), &nothing(), &[("a", "b".to_owned())], 40_000, false).unwrap();
         let short = merge_results(&all, &at("no.parquet"), &nothing(), &[], 40_001, true).unwrap_err().to_string();
         assert!(short.ends_with("its parts have 40000 rows instead of 40001"), "{short}");
         assert!(rows(&at("merged.parquet")) == rows(&whole));
-        merge_results(
-            std::slice::from_ref(&whole),
-            &at("again.parquet"),
-            &nothing(),
-            &[("a", "b".to_owned())],
-            40_000,
-            false,
-        )
-        .unwrap();
+        let notes = [("a", "b".to_owned())];
+        merge_results(&all_of([&whole]), &at("again.parquet"), &nothing(), &notes, 40_000, false).unwrap();
         assert!(std::fs::read(at("merged.parquet")).unwrap() == std::fs::read(at("again.parquet")).unwrap());
         let first = written(&at("first.parquet"), 0..10_001);
-        for (from, to) in [(&all[..], "cut.parquet"), (&[first][..], "cut2.parquet")] {
+        for (from, to) in [(&all, "cut.parquet"), (&all_of([&first]), "cut2.parquet")] {
             merge_results(from, &at(to), &nothing(), &[], 10_001, true).unwrap();
         }
+        // Of the whole the first rows alone, though the next are in a part too.
+        let some = [(whole.clone(), 500), (parts[1].clone(), 500)];
+        merge_results(&some, &at("some.parquet"), &nothing(), &[], 1000, false).unwrap();
+        assert!(rows(&at("some.parquet")) == rows(&whole).slice(0, 1000));
         assert!(std::fs::read(at("cut.parquet")).unwrap() == std::fs::read(at("cut2.parquet")).unwrap());
         let more = merge_results(&all, &at("no.parquet"), &nothing(), &[], 10_001, false).unwrap_err().to_string();
         assert!(more.ends_with("its parts have 40000 rows instead of 10001"), "{more}");
-        let twice = merge_results(&[whole, parts[1].clone()], &at("no.parquet"), &nothing(), &[], 0, false)
+        let twice = merge_results(&all_of([&whole, &parts[1]]), &at("no.parquet"), &nothing(), &[], 0, false)
             .unwrap_err()
             .to_string();
         assert!(twice.ends_with("trace 500 is in another file too"), "{twice}");
@@ -230,7 +244,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         let fails = |path: &Path| {
-            merge_results(&[path.to_owned()], &at("no.parquet"), &nothing(), &[], 1, false).unwrap_err().to_string()
+            merge_results(&all_of([&path.to_owned()]), &at("no.parquet"), &nothing(), &[], 1, false)
+                .unwrap_err()
+                .to_string()
         };
         assert!(fails(&at("gone.parquet")).contains("gone.parquet: No such file"));
         std::fs::write(at("text.parquet"), "no table at all").unwrap();
@@ -255,9 +271,7 @@ mod tests {
                 bad[i] ^= change;
                 std::fs::write(&from, bad).unwrap();
                 // One row more than there are: what is taken is not written out.
-                let error = merge_results(std::slice::from_ref(&from), &to, &nothing(), &[], 10, false)
-                    .unwrap_err()
-                    .to_string();
+                let error = merge_results(&all_of([&from]), &to, &nothing(), &[], 10, false).unwrap_err().to_string();
                 errors += usize::from(error.contains("from.parquet"));
             }
         }

@@ -98,6 +98,16 @@ pub fn answered(folder: &Path, study: &Study, shard: Shard) -> Result<Option<Sum
     Ok(is_whole.then_some(summary))
 }
 
+/// Whether `folder` holds the answer of this study, whole or ended by its rule, whoever put it together.
+///
+/// # Errors
+///
+/// A folder that holds another study or something else.
+pub fn is_answered(folder: &Path, study: &Study) -> Result<bool, SessionError> {
+    let held = Folder::at(folder).held(study, Shard::WHOLE, false)?;
+    Ok(held.is_some_and(|state| state.stopped() != Stopped::Unfinished))
+}
+
 /// Whether the folder's `summary.json` is this one, or rightly not there since the study has not ended.
 ///
 /// # Errors

@@ -151,6 +151,12 @@ pub enum SessionError {
         /// What is wrong.
         fault: RowsFault,
     },
+    /// A merge with rows cannot take a merge of some parts, which has none.
+    #[error("{} has an answer of some parts, without their rows; give those parts instead", folder.display())]
+    NoRows {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// One of the shards to be merged is the folder that is to be written to.
     #[error("{} is one of the shards; give another folder", folder.display())]
     IsShard {

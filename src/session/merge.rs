@@ -13,6 +13,9 @@ use super::under_way::Session;
 use crate::output::{WriteError, merge_results};
 use crate::study::{Shard, State, StateError, Stopped, Study, merge as merge_states};
 
+/// How often rows of parts under way are looked for before it is said that they are not there.
+const TRIES: u32 = 3;
+
 /// Puts the parts in these folders together, which make up a study, in the folder `out`; or, if `is_partial`, those
 /// that are there, also while others write to them. `made` is told of that once the parts are known to be sound and it
 /// is there. Returns the study there, to be [concluded](Session::conclude) with the report. Holds one part at a time.
@@ -43,17 +46,32 @@ pub fn merge(
         let _shared = if is_partial { None } else { Lock::share(path)? };
         Folder::at(path).state(&study)
     };
-    let state = merge_states(&study, &begun, is_partial, load)?;
-    let mut rows = Vec::new();
-    if study.plan().outputs.traces && !state.is_partial() {
-        for path in &begun {
-            let folder = Folder::at(path);
-            rows.push(rows::of_shard(&folder, &folder.state(&study)?)?);
+    let gather = || {
+        let state = merge_states(&study, &begun, is_partial, load)?;
+        let mut rows = Vec::new();
+        if study.plan().outputs.traces && !state.is_partial() {
+            for path in &begun {
+                let folder = Folder::at(path);
+                rows.extend(rows::of_blocks(&folder, &folder.state(&study)?)?);
+            }
         }
+        Ok::<_, SessionError>((state, rows))
+    };
+    // Where a part is under way, its rows may be put into one file just as they are looked for.
+    let mut left = if is_partial && study.plan().outputs.traces { TRIES } else { 1 };
+    let mut gathered = gather();
+    while gathered.is_err() && left > 1 {
+        left -= 1;
+        gathered = gather();
     }
+    let (state, rows) = gathered?;
     let folder = Arc::new(Folder::make(out)?);
     made(&folder);
-    let merged = put_together(&folder, &study, &base, state, &rows);
+    let mut merged = put_together(&folder, &study, &base, state, &rows);
+    while merged.is_err() && left > 1 {
+        left -= 1;
+        merged = gather().and_then(|(state, rows)| put_together(&folder, &study, &base, state, &rows));
+    }
     if merged.is_err() {
         folder.take_back();
     }
@@ -68,7 +86,7 @@ fn put_together(
     study: &Study,
     base: &Path,
     mut state: State,
-    rows: &[PathBuf],
+    rows: &[(PathBuf, u64)],
 ) -> Result<State, SessionError> {
     if let Some(held) = folder.held(study, Shard::WHOLE, false)?
         && state.is_partial()

@@ -43,7 +43,7 @@ mod sweep;
 mod sweep_record;
 mod under_way;
 
-pub use conclude::{answered, is_answer, look};
+pub use conclude::{answered, is_answer, is_answered, look};
 pub use error::{Action, Difference, Note, RowsFault, SessionError};
 pub use folder::Folder;
 pub use holder::Holder;

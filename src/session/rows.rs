@@ -103,8 +103,8 @@ impl Rows {
 
     /// Puts all rows into one file, once the study is done, those of so many traces; the parts of which are these.
     pub(super) fn finish(self, folder: &Folder, parts: &[Part], traces: u64) -> Result<Check, SessionError> {
-        let (parts, whole): (Vec<PathBuf>, _) =
-            (parts.iter().map(|part| path(&self.folder, part.places.start)).collect(), folder.file(TRACES));
+        let of = |part: &Part| (path(&self.folder, part.places.start), part.places.end - part.places.start);
+        let (parts, whole): (Vec<_>, _) = (parts.iter().map(of).collect(), folder.file(TRACES));
         merge_results(&parts, &whole, &self.scene, &self.notes, traces, false)?;
         check(&whole).map_err(|cause| unread(&whole, cause))
     }
@@ -132,16 +132,47 @@ pub(super) fn clear(folder: &Folder) -> Result<(), SessionError> {
     }
 }
 
-/// The check sum of the rows of a shard that is done.
+/// The rows of a shard that is done.
 pub(super) fn of_shard(folder: &Folder, state: &State) -> Result<PathBuf, SessionError> {
-    let file = folder.file(TRACES);
-    let fault = |fault| SessionError::ShardRows { file: folder.file(TRACES), folder: folder.path().to_owned(), fault };
-    match (state.kept.files.get(TRACES), check(&file)) {
-        (None, _) => Err(fault(RowsFault::Missing)),
-        (Some(_), Err(cause)) => Err(fault(RowsFault::Unread(cause))),
-        (Some(known), Ok(found)) if *known != found => Err(fault(RowsFault::Damaged)),
-        _ => Ok(file),
+    match state.kept.files.get(TRACES) {
+        None => Err(shard_fault(folder, folder.file(TRACES), RowsFault::Missing)),
+        Some(known) => checked(folder, folder.file(TRACES), known),
     }
+}
+
+/// The rows of all whole blocks that a part has done, under way or not: files, each with how many of its first rows
+/// these are.
+pub(super) fn of_blocks(folder: &Folder, state: &State) -> Result<Vec<(PathBuf, u64)>, SessionError> {
+    let all = state.traces();
+    if state.is_partial() {
+        return Err(SessionError::NoRows { folder: folder.path().to_owned() });
+    }
+    if state.stopped() != Stopped::Unfinished {
+        return Ok(vec![(of_shard(folder, state)?, all)]);
+    }
+    let (parts, mut next, mut files) = (folder.file(PARTS), 0, Vec::new());
+    for part in state.kept.parts.iter().filter(|part| part.places.start < all) {
+        let Range { start, end } = part.places;
+        if start != next {
+            break;
+        }
+        files.push((checked(folder, path(&parts, start), &part.check)?, end.min(all) - start));
+        next = end;
+    }
+    if next < all { Err(shard_fault(folder, parts, RowsFault::Missing)) } else { Ok(files) }
+}
+
+/// A file of a shard's rows, if it is as it was written.
+fn checked(folder: &Folder, file: PathBuf, known: &Check) -> Result<PathBuf, SessionError> {
+    match check(&file) {
+        Err(cause) => Err(shard_fault(folder, file, RowsFault::Unread(cause))),
+        Ok(found) if found != *known => Err(shard_fault(folder, file, RowsFault::Damaged)),
+        Ok(_) => Ok(file),
+    }
+}
+
+fn shard_fault(folder: &Folder, file: PathBuf, fault: RowsFault) -> SessionError {
+    SessionError::ShardRows { file, folder: folder.path().to_owned(), fault }
 }
 
 fn path(parts: &Path, first: u64) -> PathBuf {

@@ -229,10 +229,13 @@ fn merge_points(
 ) -> Result<(), SessionError> {
     for (folder, point) in sweep.points() {
         let own: Vec<PathBuf> = parts.iter().map(|part| part.join(&point.folder)).collect();
+        // A part that came to it once others were certain enough has not begun it: what is missing is named.
+        let begun: Vec<PathBuf> = own.iter().filter(|part| part.join(STATE).exists()).cloned().collect();
         // Of a study that no part has begun there is nothing to say yet.
-        if is_partial && !own.iter().any(|part| part.join(STATE).exists()) {
+        if is_partial && begun.is_empty() {
             continue;
         }
+        let own = if begun.is_empty() { own } else { begun };
         let (session, report) = merge(&own, is_partial, base, &folder, &mut *made)?;
         session.conclude(&report)?;
     }

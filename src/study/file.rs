@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::file_places::{explain, line_of, vanishing};
 use super::plan::{AnchorPlan, Plan};
-use super::plan_error::PlanError;
+use super::plan_error::{PlanError, PlanFault};
 use super::tally::Tallies;
 use crate::engine::Precision;
 use crate::geometry::number;
@@ -150,6 +150,26 @@ impl Plan {
         Ok(())
     }
 
+    /// Refuses to share out a study that ends by the clock: how far that is depends on the machine, so its parts would
+    /// make no study that another run gives again.
+    ///
+    /// # Errors
+    ///
+    /// A plan with `until.seconds`.
+    pub fn check_shared(&self) -> Result<(), PlanError> {
+        match self.until.seconds {
+            None => Ok(()),
+            Some(_) => Err(PlanError::at_key(
+                "until.seconds",
+                PlanFault::Value(
+                    "how far a study comes in a time depends on the machine, so it cannot be shared out; leave it out, \
+                     and have each part stop in time by --stop-after, or end the study by until.relative_error"
+                        .to_owned(),
+                ),
+            )),
+        }
+    }
+
     /// How many blocks it has. O(1).
     pub fn blocks(&self) -> u64 {
         self.run.count().div_ceil(u64::from(self.run.block))
@@ -175,7 +195,7 @@ impl PlanError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::{PlanFault, Study};
+    use crate::study::Study;
 
     fn fault(from: &str, to: &str) -> String {
         assert!(EXAMPLE.contains(from), "{from}");

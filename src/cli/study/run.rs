@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use tautline::output::folder_of;
-use tautline::session::{Folder, Session, SweepFolder, answered};
+use tautline::session::{Folder, Session, SweepFolder, answered, is_answered};
 use tautline::study::{EXAMPLE, Study, StudyFile};
 
 use super::answer::{conclude, duration, standing, tell as tell_answer};
@@ -37,6 +37,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let mut plan = file.plan()?;
     args.change(&mut plan);
     args.check(&plan)?;
+    args.check_part(&plan).map_err(|e| file.located(e))?;
     let study = Arc::new(Study::open(plan, base).map_err(|e| file.located(e))?);
     study.check_moves().map_err(|e| file.located(e))?;
     if let Some(file) = &study.plan().scene.file {
@@ -52,6 +53,11 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         && let Some(summary) = answered(&out, &study, shard)?
     {
         return tell_answer(&summary, &study, None, &out, args.json);
+    }
+    if let Some(whole) = &args.enough
+        && is_answered(whole, &study)?
+    {
+        return print(&format!("{} has the answer already\n", whole.display()));
     }
     // An engine that is refused leaves no folder behind.
     let engines = Engines::open(&args.engine, &study)?;

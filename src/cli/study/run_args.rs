@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
-use tautline::study::{Assignment, Plan, Shard, read_blocks};
+use tautline::study::{Assignment, Plan, PlanError, Shard, read_blocks};
 
 use super::base::{BaseArgs, WaitArgs};
 use super::stop::StopArgs;
@@ -42,6 +42,10 @@ pub(crate) struct RunArgs {
     /// Begin, or go on with what is there, however often this is called: one that is done is told and left as it is
     #[arg(long)]
     pub(super) resume: bool,
+    /// Leave alone what has its answer in this folder: the study, or each such point of a sweep. For parts of a study
+    /// that ends once it is certain enough, with what `study merge --partial` makes of all of them
+    #[arg(long, value_name = "DIR")]
+    pub(super) enough: Option<PathBuf>,
     #[command(flatten)]
     pub(super) stop: StopArgs,
     #[command(flatten)]
@@ -104,23 +108,14 @@ impl RunArgs {
         all.into_iter().filter(|(is_given, ..)| *is_given).map(|(_, option, key)| (option, key))
     }
 
+    /// Refuses a part of a study that has none.
+    pub(super) fn check_part(&self, plan: &Plan) -> Result<(), PlanError> {
+        if self.part() == Shard::WHOLE { Ok(()) } else { plan.check_shared() }
+    }
+
     /// Refuses options that do not go with a study.
     pub(super) fn check(&self, plan: &Plan) -> Result<(), Failure> {
-        self.engine.check(plan.run.precision)?;
-        let is_part = self.part() != Shard::WHOLE;
-        if is_part && plan.until.seconds.is_some() {
-            return Err(Failure::input(anyhow!(
-                "--shard: what a shard does must not depend on its machine; leave out until.seconds, or give \
-                 --stop-after"
-            )));
-        }
-        if is_part && plan.until.relative_error.is_some() && plan.outputs.traces {
-            return Err(Failure::input(anyhow!(
-                "--shard: which rows there are is known only once all shards are merged; leave out outputs.traces, or \
-                 [until]"
-            )));
-        }
-        Ok(())
+        self.engine.check(plan.run.precision)
     }
 
     /// The folder for what comes out.

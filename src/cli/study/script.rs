@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use tautline::output::{folder_of, write_whole};
-use tautline::study::{Shard, Study, StudyFile};
+use tautline::study::{Plan, Shard, Study, StudyFile};
 
 use super::answer::duration;
 use super::estimate::{check_sweep, measure};
@@ -66,6 +66,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let (suffix, template) = match args.scheduler {
         Scheduler::Slurm => ("slurm.sh", include_str!("script/slurm.sh")),
         Scheduler::Dask => ("dask.py", include_str!("script/dask.py")),
+        Scheduler::Parallel if has_rule => ("parallel.sh", include_str!("script/parallel-rule.sh")),
         Scheduler::Parallel => ("parallel.sh", include_str!("script/parallel.sh")),
     };
     let to = args.to.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.{suffix}")));
@@ -73,10 +74,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let shown = to.display();
         return Err(Failure::input(anyhow!("cannot write {shown}: it is there already; give another name by --to")));
     }
-    let rule = match (args.scheduler, has_rule) {
-        (Scheduler::Slurm, true) => include_str!("script/slurm-rule.sh"),
-        _ => "",
-    };
     let quote = |path: &Path| quoted(args.scheduler, path);
     let here = |path: &Path| std::path::absolute(path).unwrap_or(path.to_owned());
     let out = here(&args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}-study"))));
@@ -86,9 +83,13 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let before = Duration::from_secs(120).min(args.time / 10);
     let seconds = |time: Duration| time.as_secs().max(1).to_string();
     let words = |text: &str| text.replace(['\n', '\r'], " ");
-    let (slice, enough) = match rule {
-        "" => ("", ""),
-        _ => (" --stop-after 60s", include_str!("script/slurm-enough.sh")),
+    let [enough, slice, rule] = match has_rule {
+        true => [
+            include_str!("script/slurm-enough.sh"),
+            " --stop-after 60s --enough \"$out/so-far\"",
+            include_str!("script/slurm-rule.sh"),
+        ],
+        false => [""; 3],
     };
     let mut text = template.replace("@RULE@", rule).replace("@ENOUGH@", enough).replace("@SLICE@", slice);
     for (key, value) in [
@@ -111,18 +112,23 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     print(&format!("wrote {shown}: {parts}; read it, then run it with: {command} {shown}\n"))
 }
 
-/// About how long all of it would take here, how many blocks the largest study has, and whether it may end before its
-/// last block. The parts of a sweep do all their blocks: its script merges what is whole.
+/// About how long all of it would take here, how many blocks the largest study has, and whether one may end before its
+/// last block.
 fn cost(args: &Args) -> Result<(Duration, u64, bool), Failure> {
     let (file, folder) = (StudyFile::read(&args.file, &[])?, folder_of(&args.file));
+    let has_rule = |plan: &Plan| plan.until.relative_error.is_some();
     if let Some(sweep) = file.sweep()? {
-        let blocks = sweep.points().iter().map(|point| point.plan.blocks()).max().unwrap_or(1);
-        return Ok((check_sweep(&sweep, folder, Some((&args.engine, Shard::WHOLE)))?, blocks, false));
+        let plans = || sweep.points().iter().map(|point| &point.plan);
+        plans().enumerate().try_for_each(|(i, plan)| plan.check_shared().map_err(|e| sweep.located(e, i)))?;
+        let all = check_sweep(&sweep, folder, Some((&args.engine, Shard::WHOLE)))?;
+        return Ok((all, plans().map(Plan::blocks).max().unwrap_or(1), plans().any(has_rule)));
     }
-    let study = Study::open(file.plan()?, folder).map_err(|e| file.located(e))?;
+    let plan = file.plan()?;
+    plan.check_shared().map_err(|e| file.located(e))?;
+    let study = Study::open(plan, folder).map_err(|e| file.located(e))?;
     study.check_moves().map_err(|e| file.located(e))?;
     let all = measure(&study, &args.engine, Shard::WHOLE)?.all(&study, Shard::WHOLE).unwrap_or_default();
-    Ok((all, study.plan().blocks(), study.plan().until.relative_error.is_some()))
+    Ok((all, study.plan().blocks(), has_rule(study.plan())))
 }
 
 /// A path as the script's language has it.

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::anyhow;
-use tautline::session::{Folder, Session, SessionError, SweepFolder, answered};
+use tautline::session::{Folder, Session, SessionError, SweepFolder, answered, is_answered};
 use tautline::study::{Study, Sweep, SweepAnswer};
 
 use super::answer::duration;
@@ -25,7 +25,10 @@ pub(super) fn run(args: &RunArgs, mut sweep: Sweep, base: &Path, guard: &Guard) 
         return Err(Failure::input(anyhow!("{option}: the file sweeps {key}; leave one of them out")));
     }
     sweep.change(|plan| args.change(plan));
-    sweep.points().iter().try_for_each(|point| args.check(&point.plan))?;
+    for (i, point) in sweep.points().iter().enumerate() {
+        args.check(&point.plan)?;
+        args.check_part(&point.plan).map_err(|e| sweep.located(e, i))?;
+    }
     let (out, shard) = (args.folder(), args.part());
     if args.dry_run {
         let expected = check_sweep(&sweep, base, Some((&args.engine, shard)))?;
@@ -45,7 +48,8 @@ pub(super) fn run(args: &RunArgs, mut sweep: Sweep, base: &Path, guard: &Guard) 
     }
     let folder = SweepFolder::begin(&out, &sweep, base, shard, args.resume)?;
     guard.change(stopped_before(&out, || ()));
-    let work = Work { engine: &args.engine, wait: &args.wait, may_raise: args.resume };
+    let enough = args.enough.as_deref();
+    let work = Work { engine: &args.engine, wait: &args.wait, may_raise: args.resume, enough };
     work.all(&folder, base, guard)?;
     conclude(&folder, Some(base), args.json)
 }
@@ -54,7 +58,7 @@ pub(super) fn resume(args: &ResumeArgs, guard: &Guard) -> Result<(), Failure> {
     let folder = SweepFolder::open(&args.folder)?;
     folder.points().try_for_each(|(_, point)| args.check(&point.study))?;
     let base = args.base.folder().unwrap_or(&folder.record().base).to_owned();
-    let work = Work { engine: &args.engine, wait: &args.wait, may_raise: true };
+    let work = Work { engine: &args.engine, wait: &args.wait, may_raise: true, enough: None };
     work.all(&folder, &base, guard)?;
     conclude(&folder, args.base.folder(), args.json)
 }
@@ -65,6 +69,8 @@ struct Work<'a> {
     wait: &'a WaitArgs,
     /// Whether folders may hold the same with fewer traces.
     may_raise: bool,
+    /// The folder of a sweep whose answers need not be computed again.
+    enough: Option<&'a Path>,
 }
 
 impl Work<'_> {
@@ -75,6 +81,12 @@ impl Work<'_> {
             let study = Study::open(point.study.clone(), base)
                 .map_err(|error| SessionError::Plan { error, began: Some(base.to_owned()) })?;
             if answered(&out, &study, sweep.record().shard)?.is_some() {
+                continue;
+            }
+            if let Some(whole) = self.enough
+                && is_answered(&whole.join(&point.folder), &study)?
+            {
+                say!("{} of {count}: {} has the answer already", point.folder, whole.display());
                 continue;
             }
             say!("{} of {count}: {}", point.folder, words(&sweep.record().keys, &point.values));

@@ -23,6 +23,7 @@ mod scenes;
 mod schema;
 mod steps;
 mod study;
+mod study_rule;
 mod study_shared;
 mod study_sweep;
 mod tether;

@@ -161,9 +161,15 @@ fn a_study_ends_when_it_is_certain_enough() {
     assert_eq!(short.code, Some(5), "{}", short.stderr);
     assert!(short.stderr.contains("relative_error") && folder.path("c/summary.json").exists());
     folder.write("v.toml", format!("{STUDY}[until]\nseconds = 5\n"));
-    folder.refused(2, "study run v.toml --out d --shard 0/2", &["--shard"]);
-    folder.write("w.toml", format!("{STUDY}[until]\nrelative_error = 0.02\n[outputs]\ntraces = true\n"));
-    folder.refused(2, "study run w.toml --out d --shard 0/2", &["--shard", "outputs.traces"]);
+    // What the clock ends is not shared out, by whatever name, and no script is written that would try.
+    for share in ["run v.toml --out d --shard 0/2", "run v.toml --out d --blocks 0..3", "script slurm v.toml"] {
+        folder.refused(2, &format!("study {share}"), &["v.toml", "until.seconds: how far", "--stop-after"]);
+    }
+    folder.write("s.toml", format!("{STUDY}[until]\nseconds = 5\n[sweep]\nwalk.step = [0.3, 0.4]\n"));
+    for share in ["run s.toml --out d --shard 0/2", "script parallel s.toml"] {
+        folder.refused(2, &format!("study {share}"), &["s.toml", "until.seconds: how far"]);
+    }
+    assert!(!folder.path("d").exists());
 }
 
 /// Trace and length of each row of `traces.parquet`.
@@ -304,6 +310,19 @@ fn faults_in_a_study_are_named() {
     folder.refused(2, "study init new.toml", &["new.toml"]);
     folder.done("study run new.toml --count 100 --out b");
     assert!(folder.done("study schema").stdout.contains("\"walk\""));
+}
+
+#[test]
+fn anchors_are_sampled_where_the_scene_marks_one() {
+    let folder = Folder::new();
+    folder.write("w.wkt", "LINESTRING (1 1, 2 2)");
+    let text =
+        "[scene]\nfile = \"w.wkt\"\nanchor = { sample = 3 }\n[walk]\nkind = \"uniform\"\nstep = 0.1\nsteps = 9\n";
+    folder.write("w.toml", text);
+    let says = ["w.toml: line 3: scene.anchor: anchors are sampled in the free space", "it marks none: mark one"];
+    folder.refused(2, "study run w.toml", &says);
+    folder.write("w.wkt", "GEOMETRYCOLLECTION (LINESTRING (1 1, 2 2), POINT (1.5 1))");
+    folder.done("study run w.toml --count 20");
 }
 
 #[test]

@@ -9,22 +9,22 @@ use super::study::rows;
 use super::{Finished, Folder};
 
 /// Two anchors, 24 blocks, the last one smaller than the others.
-const STUDY: &str = "[scene]\nbuilt_in = \"rooms\"\nanchor = { sample = 2 }\n\
+pub(super) const STUDY: &str = "[scene]\nbuilt_in = \"rooms\"\nanchor = { sample = 2 }\n\
     [walk]\nkind = \"persistent\"\nstep = 0.4\nsteps = 60\n\
     [run]\ntraces = 950\nblock = 40\n[tallies]\nlimits = [5.0]\n[outputs]\npictures = false\n";
 
-fn study() -> Folder {
+pub(super) fn study() -> Folder {
     let folder = Folder::new();
     folder.write("s.toml", STUDY);
     folder.write("long.toml", STUDY.replace("950", "120_000").replace("block = 40", "block = 400"));
     folder
 }
 
-fn answer(folder: &Folder, run: &str) -> String {
+pub(super) fn answer(folder: &Folder, run: &str) -> String {
     folder.text(&format!("{run}/summary.json"))
 }
 
-fn start(folder: &Folder, args: &str) -> Child {
+pub(super) fn start(folder: &Folder, args: &str) -> Child {
     folder.command(args).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -39,7 +39,7 @@ fn wait_for(folder: &Folder, child: &mut Child, run: &str) {
     }
 }
 
-fn send(signal: &str, child: &Child) {
+pub(super) fn send(signal: &str, child: &Child) {
     assert!(Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status().unwrap().success());
 }
 

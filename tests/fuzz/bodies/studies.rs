@@ -93,7 +93,7 @@ pub(super) fn merge(input: &[u8], folder: &Path) {
     fs::write(&from, bytes).expect("the folder can be written to");
     let no_walls = Scene::new([]).expect("it has no walls");
     let merge = |from: &PathBuf, to: &PathBuf| {
-        merge_results(std::slice::from_ref(from), to, &no_walls, &[], rows.into(), false)
+        merge_results(&[(from.clone(), u64::MAX)], to, &no_walls, &[], rows.into(), false)
     };
     match merge(&from, &to) {
         Ok(()) => {

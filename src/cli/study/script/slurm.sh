@@ -23,11 +23,11 @@ submit() {
 
 run() {
     code=0
-    "$tautline" study run "$study" --shard "$SLURM_ARRAY_TASK_ID@1-$parts" --out "$out/part-$SLURM_ARRAY_TASK_ID" \
+@ENOUGH@    "$tautline" study run "$study" --shard "$SLURM_ARRAY_TASK_ID@1-$parts" --out "$out/part-$SLURM_ARRAY_TASK_ID" \
         --resume --wait @WAIT@s --stop-before @BEFORE@s@SLICE@ || code=$?
 }
 
-@ENOUGH@part() {
+part() {
     # When the job ends. The number of the last task alone would stand for the whole array.
     local task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
     : "${SLURM_JOB_END_TIME:=$(date -d "$(squeue -h -j "$task" -o %e)" +%s)}"
