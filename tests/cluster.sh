@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# One study over many machines: a whole Slurm on this one, and Dask. Each case must give, byte for byte, what one run gives:
-# an array and its merge, a time limit and what is put back, a node that is killed, a worker that is killed, a stop over shards,
-# a sweep.
+# One study over many machines: a whole Slurm on this one, GNU parallel, and Dask. Each case must give, byte for byte, what one
+# run gives: an array and its merge, a time limit and what is put back, a node that is killed, a worker that is killed, jobs that
+# are stopped, a stop over shards, a sweep, a sweep whose points stop by their rule.
 #   tests/cluster.sh         TAUTLINE names another binary than the release build, TAUTROPE another wheel than that of it
-# Where Slurm or Dask cannot be had it says that those cases did not run, and ends with 0.
+# What cannot be had it installs, if there is apt-get, or pip. Where that does not help it says which cases did not run, and fails
+# if SCHEDULERS, such as "slurm parallel dask", names them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -15,7 +16,7 @@ TAUTLINE=$(realpath "$TAUTLINE")
 export TAUTLINE NODEVICE_SELECT=1 RAYON_NUM_THREADS=1
 work=$(mktemp -d /tmp/cluster.XXXXXX)
 pids=()
-passed=0 failed=0 left_out=()
+passed=0 failed=0 left_out=() promised=" ${SCHEDULERS:-} "
 say() { printf '%4d s  %s\n' "$SECONDS" "$*"; }
 
 # Everything that was started is ended by its own number.
@@ -65,6 +66,16 @@ same_sweep() { # same_sweep CASE FOLDER TRUTH
     passed=$((passed + 1))
     say "$1: the same bytes"
 }
+spared() { # spared CASE: that its parts have not done all blocks
+    local told
+    told=$("$TAUTLINE" study status "$work/$1"/part-*/ | sed -n '1s/.*: \([0-9]*\) of \([0-9]*\) blocks done.*/\1 \2/p')
+    if [ "${told% *}" -lt "${told#* }" ]; then
+        say "${told% *} of ${told#* } blocks were done for it"
+    else
+        failed=$((failed + 1))
+        say "FAILED: $1: all ${told#* } blocks were done, though fewer were enough"
+    fi
+}
 wait_for() { # wait_for SECONDS COMMAND...
     local end=$((SECONDS + $1))
     shift
@@ -76,13 +87,21 @@ wait_for() { # wait_for SECONDS COMMAND...
 
 root=()
 [ "$(id -u)" -eq 0 ] || root=(sudo -n)
-has_slurm() { command -v slurmctld && command -v slurmd && command -v sbatch && command -v munged; }
-if ! has_slurm >/dev/null && command -v apt-get >/dev/null; then
-    say "installing Slurm (slurmctld, slurmd, slurm-client, munge)"
+install() { # install PACKAGES...
+    command -v apt-get >/dev/null || return 0
+    say "installing $*"
     "${root[@]}" apt-get update -qq >/dev/null 2>&1 || true
-    "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-        slurmctld slurmd slurm-client munge >/dev/null 2>&1 || true
-fi
+    "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null 2>&1 || true
+}
+did_not_run() { # did_not_run NAME WHY
+    left_out+=("$1: $2")
+    case $promised in *" $1 "*) failed=$((failed + 1)) && say "FAILED: $1 was to run" ;; esac
+}
+has_slurm() { command -v slurmctld && command -v slurmd && command -v sbatch && command -v munged; }
+has_slurm >/dev/null || install slurmctld slurmd slurm-client munge
+# Another program of that name is in the package moreutils.
+has_parallel() { parallel --version 2>/dev/null | grep -q "^GNU parallel"; }
+has_parallel || install parallel
 
 # The studies, and what one run says. One takes long enough that something can happen meanwhile.
 study() { # study NAME TRACES UNTIL
@@ -96,13 +115,15 @@ start=$(date +%s%N)
 "$TAUTLINE" study run "$work/short.toml" --seed 2 --out "$work/pace" --engine cpu >/dev/null 2>&1
 pace=$((12000 * 1000000000 / ($(date +%s%N) - start)))
 study long $((pace * 24 / 500 * 500))
-study rule 40000 $'[until]\nrelative_error = 0.01'
+study rule $((pace * 40 / 500 * 500)) $'[until]\nrelative_error = 0.01'
 study sweep 6000 $'[sweep]\nwalk.step = [0.3, 0.4, 0.5]'
+study rules 20000 $'[until]\nrelative_error = 0.02\n[sweep]\nwalk.step = [0.2, 0.4, 0.6]'
 say "one run, about $pace traces a second"
 (RAYON_NUM_THREADS=2 "$TAUTLINE" study run "$work/long.toml" --out "$work/long" --engine cpu >/dev/null 2>&1) &
 truth=$!
 "$TAUTLINE" study run "$work/rule.toml" --out "$work/rule" --engine cpu >/dev/null 2>&1
 "$TAUTLINE" study run "$work/sweep.toml" --out "$work/sweep" --engine cpu >/dev/null 2>&1
+"$TAUTLINE" study run "$work/rules.toml" --out "$work/rules" --engine cpu >/dev/null 2>&1
 wait "$truth"
 say "the truth is there"
 
@@ -164,9 +185,11 @@ if [ "$(id -u)" -eq 0 ] && has_slurm >/dev/null && begin_slurm >"$work/slurm.beg
     write slurm short array 6
     write slurm long limit 3
     write slurm rule stop 8
+    write slurm rules stops 4
     # As if the job's end were nearer than a minute, which is the least that Slurm knows.
     sed -i 's/--stop-before [0-9]*s/--stop-after 4s/' "$work/limit.script"
     sed -i 's/--stop-after 60s/--stop-after 6s/' "$work/stop.script"
+    sed -i 's/--stop-after 60s/--stop-after 3s/' "$work/stops.script"
     write slurm long lost 3
     bash "$work/array.script" >/dev/null
     wait_for 60 over || true
@@ -175,6 +198,9 @@ if [ "$(id -u)" -eq 0 ] && has_slurm >/dev/null && begin_slurm >"$work/slurm.beg
     bash "$work/swept.script" >/dev/null
     wait_for 60 over || true
     same_sweep "Slurm, a sweep" swept/all sweep
+    bash "$work/stops.script" >/dev/null
+    wait_for 120 over || true
+    same_sweep "Slurm, a sweep whose points stop by their rule" stops/all rules
     bash "$work/lost.script" >/dev/null
     bash "$work/limit.script" >/dev/null
     bash "$work/stop.script" >/dev/null
@@ -189,9 +215,41 @@ if [ "$(id -u)" -eq 0 ] && has_slurm >/dev/null && begin_slurm >"$work/slurm.beg
     grep -q 'are saved: go on' "$work"/limit/part-*.log || { failed=$((failed + 1)); say "FAILED: no part was stopped in time"; }
     same "Slurm, a node that is killed" lost/all long
     same "Slurm, a stop over shards" stop/all rule
-    "$TAUTLINE" study status "$work"/stop/part-*/ | sed -n 1p | cut -c1-70
+    spared stop
 else
-    left_out+=("Slurm (its packages, or the right to start it, are missing: $(tail -n 1 "$work/slurm.begin" 2>/dev/null || true))")
+    did_not_run slurm "its packages, or the right to start it, are missing: $(tail -n 1 "$work/slurm.begin" 2>/dev/null || true)"
+fi
+
+parallel_says() { PARALLEL_HOME=$work/parallel bash "$work/$1.script" --jobs 2 --will-cite >"$work/$1.parallel.log" 2>&1; }
+if has_parallel; then
+    say "$(parallel --version | head -n 1)"
+    write parallel short jobs 6
+    parallel_says jobs || true
+    same "GNU parallel, parts and their merge" jobs/all short
+    write parallel sweep jobs-swept 3
+    parallel_says jobs-swept || true
+    same_sweep "GNU parallel, a sweep" jobs-swept/all sweep
+    write parallel rule jobs-stop 4
+    write parallel rules jobs-stops 4
+    sed -i 's/--stop-after 60s/--stop-after 3s/' "$work/jobs-stop.script" "$work/jobs-stops.script"
+    parallel_says jobs-stop || true
+    same "GNU parallel, a stop over shards" jobs-stop/all rule
+    spared jobs-stop
+    parallel_says jobs-stops || true
+    same_sweep "GNU parallel, a sweep whose points stop by their rule" jobs-stops/all rules
+    write parallel long jobs-ended 3
+    # All of the script's processes get the signal, as at Ctrl-C; it comes when some parts are under way.
+    PARALLEL_HOME=$work/parallel setsid bash "$work/jobs-ended.script" --jobs 2 --will-cite >"$work/jobs-ended.parallel.log" 2>&1 &
+    group=$!
+    wait_for 60 test -e "$work/jobs-ended/part-2/state.bin" || true
+    sleep 3
+    kill -TERM -- "-$group"
+    wait "$group" && { failed=$((failed + 1)); say "FAILED: the script ended well though it was stopped"; }
+    [ ! -e "$work/jobs-ended/all" ] || { failed=$((failed + 1)); say "FAILED: it was merged though it was stopped"; }
+    parallel_says jobs-ended || true
+    same "GNU parallel, jobs that were stopped and go on" jobs-ended/all long
+else
+    did_not_run parallel "its package is missing"
 fi
 
 # Dask's workers need the Python package: the wheel that TAUTROPE names, or one that is built here.
@@ -226,6 +284,10 @@ if [ -n "$python" ]; then
     write dask rule enough 8
     "$python" "$work/enough.script" "tcp://127.0.0.1:$port" >"$work/enough/tasks.log" 2>&1 || true
     same "Dask, a stop over shards" enough rule
+    write dask rules ends 6
+    mkdir -p "$work/ends"
+    "$python" "$work/ends.script" "tcp://127.0.0.1:$port" >"$work/ends/tasks.log" 2>&1 || true
+    same_sweep "Dask, a sweep whose points stop by their rule" ends rules
     write dask long killed 12
     "$python" "$work/killed.script" "tcp://127.0.0.1:$port" >"$work/killed/tasks.log" 2>&1 &
     client=$!
@@ -235,7 +297,7 @@ if [ -n "$python" ]; then
     wait "$client" || true
     same "Dask, a worker that is killed" killed long
 else
-    left_out+=("Dask (it is neither installed nor to be had)")
+    did_not_run dask "it is neither installed nor to be had"
 fi
 
 for what in "${left_out[@]}"; do say "DID NOT RUN: $what"; done

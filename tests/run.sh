@@ -95,5 +95,7 @@ say "kills at random system calls, and a full disk"
 tests/faults.sh 12
 say "the Python package"
 tests/python.sh
-say "one study over many machines: Slurm and Dask"
+say "one study over many machines: Slurm, GNU parallel and Dask"
+# On Debian all of them can be had, so there none may be left out.
+if command -v apt-get >/dev/null; then export SCHEDULERS="slurm parallel dask"; fi
 tests/cluster.sh
