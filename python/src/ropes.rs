@@ -16,6 +16,7 @@ use tautline::rope::{TraceRecord, replay};
 use tautline::scene::{Centre, Model};
 use tautline::study::Study;
 use tautline::trace::{SettledTrace, Trace, settle_owned};
+use tautline::words::plainly;
 
 use crate::compute::{self, Work};
 use crate::fault::Fault;
@@ -224,7 +225,11 @@ impl Ropes {
         let settled = self.settled()?;
         let ends = settled.get(place).map_or(Cow::Borrowed(&[] as &[DVec2]), |trace| trace.ends());
         if step >= ends.len() {
-            return Err(Fault::input(format!("there is no step {step}; the trace has {} points", ends.len())).into());
+            return Err(Fault::input(format!(
+                "there is no step {step}; the trace has {}",
+                plainly(ends.len() as u64, "point", "points")
+            ))
+            .into());
         }
         let mut points = vec![self.of.model.anchor()];
         let (vertices, events) = (self.of.model.vertices(), &self.of.records[place].events);

@@ -15,7 +15,7 @@ use super::failure::Failure;
 use super::input::{InputArgs, dropped};
 use super::look::{Look, Target, save};
 use super::paths::keep_apart;
-use super::words::{counted, place};
+use super::words::{counted, place, plainly};
 use super::{print, print_json};
 
 /// How many traces are checked at a time.
@@ -81,7 +81,10 @@ fn report(args: &Args, scene: &Scene, model: Option<&Model>, counts: Option<&Cou
     }
     let mut text = table(&described, &args.input, model);
     if let Some(Counts { traces, steps, crossing, .. }) = counts {
-        text += &format!("traces  {traces}, {steps} steps; {crossing} of the traces cross walls\n");
+        text += &format!(
+            "traces  {traces}, {}; {crossing} of the traces cross walls\n",
+            plainly(*steps as u64, "step", "steps")
+        );
     }
     if let Some(path) = &args.picture {
         text += &format!("picture {}\n", path.display());

@@ -87,7 +87,8 @@ fn draw_ends(args: &Args, traces: TraceReader, target: &Target) -> Result<(), Fa
     args.ends.refuse_anchor(&args.input)?;
     if args.look.animate {
         return Err(Failure::input(anyhow!(
-            "--animate is for ropes that are tied, and here the anchor moves: give --step"
+            "--animate is for ropes that are tied, and here the anchor moves: leave it out, and give --step K for the \
+             moment after step K"
         )));
     }
     let found = args.ends.source(traces)?.pick(&args.wanted).map_err(|error| not_found(args, error))?;
@@ -100,6 +101,13 @@ fn draw_ends(args: &Args, traces: TraceReader, target: &Target) -> Result<(), Fa
     let records = Cpu::new(model.clone()).evaluate_ends(&settled, &Job::new())?;
     let all = settled.iter().zip(&records);
     let drawing = all.fold(Drawing::new(&model), |drawing, (trace, record)| drawing.with_ends(trace, record));
+    if target.is_page() && settled.len() == 1 {
+        say!(
+            "note: {} shows the rope after a step and does not play it, since the anchor moves, and pages play ropes \
+             that are tied; --step K shows it after another step, one picture for each",
+            target.shown()
+        );
+    }
     write(target, &drawing, &args.look)
 }
 

@@ -149,6 +149,11 @@ impl Target {
         Ok(write_whole(&self.path, &bytes)?)
     }
 
+    /// Whether it is a page.
+    pub(crate) fn is_page(&self) -> bool {
+        self.kind == Kind::Html
+    }
+
     /// The file's name as people see it.
     pub(crate) fn shown(&self) -> Display<'_> {
         self.path.display()

@@ -35,6 +35,11 @@ pub(super) fn count(n: u64) -> String {
     grouped(&n.to_string())
 }
 
+/// So many of what one and several are called.
+pub(super) fn counted(n: u64, one: &str, several: &str) -> String {
+    format!("{} {}", count(n), if n == 1 { one } else { several })
+}
+
 /// Digits in groups of three if there are more than four of them.
 fn grouped(digits: &str) -> String {
     let mut out = String::new();

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::label::{count, estimate, number, percent};
+use super::label::{count, counted, estimate, number, percent};
 use super::svg::escape;
 use super::tables;
 use super::tether::sentence;
@@ -87,7 +87,7 @@ fn facts(summary: &Summary) -> String {
         [
             ("wall ends left", format!("{} of {}", count(traded.vertices_left), count(traded.vertices))),
             ("longer steps not taken", count(traded.jumps)),
-            ("crossing a simplified wall", format!("{} traces", count(traded.crossing_traces))),
+            ("crossing a simplified wall", counted(traded.crossing_traces, "trace", "traces")),
         ]
     });
     let tether = summary.tether.iter().flat_map(|tether| {

@@ -16,6 +16,7 @@ use glam::DVec2;
 use crate::read_error::{Fault, Place, ReadError};
 use crate::read_file::{SCENE_MAX, read_text};
 use crate::scene::GridMap;
+use crate::words::plainly;
 
 pub use answer::{Answer, Bucket, QueryError, Report, Row, answer_all, buckets};
 pub use drive::{Drive, Driver};
@@ -79,7 +80,7 @@ fn query(text: &str, map: &GridMap) -> Result<Query, String> {
     let columns: Vec<&str> = text.split_whitespace().collect();
     let &[bucket, _, width, height, x, y, to_x, to_y, octile] = columns.as_slice() else {
         let what = "a query has nine: bucket, map, width, height, start x, start y, goal x, goal y, octile length";
-        return Err(format!("{} columns; {what}", columns.len()));
+        return Err(format!("{}; {what}", plainly(columns.len() as u64, "column", "columns")));
     };
     let whole = |name: &str, text: &str| {
         text.parse::<usize>().map_err(|_| format!("{name} {text:?}; it must be a whole number from 0 on"))

@@ -9,6 +9,7 @@ use super::format::SceneFormat;
 use super::{Scene, excerpt};
 use crate::read_error::{Fault, Place, ReadError};
 use crate::read_file::{SCENE_MAX, read_text};
+use crate::words::plainly;
 
 /// Grid maps of MovingAI.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
@@ -120,7 +121,10 @@ impl<'a> Grid<'a> {
             next_line = line + 1;
         }
         if rows.len() < height {
-            let what = format!("the file ends after {} rows; the header says height {height}", rows.len());
+            let what = format!(
+                "the file ends after {}; the header says height {height}",
+                plainly(rows.len() as u64, "row", "rows")
+            );
             return Err(Fault::new(Place::line(next_line), what));
         }
         Ok(Grid { rows, width })
@@ -166,7 +170,7 @@ fn row(text: &str, line: u64, width: usize) -> Result<&[u8], Fault> {
         return Err(Fault::new(Place::line(line).then("column", column + 1), what));
     }
     if text.len() != width {
-        let what = format!("a row of {} cells; the header says width {width}", text.len());
+        let what = format!("a row of {}; the header says width {width}", plainly(text.len() as u64, "cell", "cells"));
         return Err(Fault::new(Place::line(line).then("column", text.len().min(width) + 1), what));
     }
     Ok(text.as_bytes())

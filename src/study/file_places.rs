@@ -5,6 +5,7 @@ use std::ops::Range;
 use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 
+use super::plain::{plain, replace, value_at};
 use super::plan::Plan;
 use super::plan_error::{PlanError, PlanFault};
 use crate::number::{self, NumberFault, VANISHES};
@@ -56,10 +57,29 @@ pub(super) fn explain(text: &str, error: &toml::de::Error) -> PlanError {
              gaussian or persistent; whether other ropes are ever longer say tallies.limits"
                 .to_owned(),
         ),
-        _ => PlanFault::Value(format!("{message}{}", nearest.unwrap_or_default())),
+        _ => {
+            let stands = key.and_then(|key| value_at(&document, &key.name));
+            let said = plain(message, stands, || choices(&document, &key?.name)).unwrap_or_else(|| message.to_owned());
+            PlanFault::Value(format!("{said}{}", nearest.unwrap_or_default()))
+        }
     };
     let line = key.map(|key| line(text, key.span.start));
     PlanError { line, key: key.map(|key| key.name.clone()), ..fault.into() }
+}
+
+/// The words that a key takes, as far as it says when it is given another one.
+fn choices(document: &toml::Table, key: &str) -> Option<String> {
+    let mut asked = document.clone();
+    if !replace(&mut asked, key, "?") {
+        return None;
+    }
+    let told = Plan::deserialize(toml::Value::Table(asked)).err()?;
+    let words = told.message().strip_prefix("unknown variant `?`, expected ")?;
+    let words = words.strip_prefix("one of ").unwrap_or(words).replace('`', "\"");
+    Some(match words.rsplit_once(", ") {
+        Some((others, last)) => format!("{others} or {last}"),
+        None => words,
+    })
 }
 
 /// Whether the fault is that a walk is given a tether whose kind has none.
@@ -184,17 +204,23 @@ mod tests {
     fn keys_and_lines_are_the_true_ones() {
         let walk = "[walk]\nkind = \"uniform\"\nsteps = 5\n";
         for (text, expected) in [
-            (format!("{walk}step = \"x\""), "line 7: walk.step: invalid type: string \"x\", expected f64"),
+            (format!("{walk}step = \"x\""), "line 7: walk.step: must be a number, such as 0.5, and is \"x\""),
             (format!("{walk}step = 1.0\nstpes = 3"), "line 8: walk.stpes: unknown field `stpes`"),
             (walk.replace("uniform", "unifrom"), "line 5: walk.kind: unknown variant `unifrom`"),
             (walk.to_owned(), "line 4: walk: missing field `step`"),
             (format!("{walk}step = 1.0\nturn = 3.0"), "line 8: walk.turn: unknown field `turn`"),
-            (format!("{walk}step = 1.0\n[run]\nblock = 10\ntraces = -1"), "line 10: run.traces: invalid value"),
+            (
+                format!("{walk}step = 1.0\n[run]\nblock = 10\ntraces = -1"),
+                "line 10: run.traces: must be a whole number, 0 or more, and is -1",
+            ),
             (format!("{walk}step = 1.0\n[run]\nblock = 10\ntraces = 0"), "line 8: run: `traces` and `block`"),
             (format!("{walk}step = 1.0\nat_walls = \"jump\""), "line 8: walk.at_walls: unknown variant `jump`"),
             (format!("{walk}step = -1.0"), "line 7: walk.step: -1 is no length"),
             (format!("{walk}step = 1.0\ntether = 0"), "line 8: walk.tether: 0 is no length of a tether; give a number"),
-            (format!("{walk}step = 1.0\ntether = 'long'"), "line 8: walk.tether: invalid type"),
+            (
+                format!("{walk}step = 1.0\ntether = 'long'"),
+                "line 8: walk.tether: must be a number, such as 0.5, and is \"long\"",
+            ),
             (format!("{walk}step = 1.0\nat_tether = 'slide'"), "line 8: walk.at_tether: there is no tether; give"),
             (format!("{walk}step = 1.0\ntether = 5\nat_tether = 'jump'"), "line 9: walk.at_tether: unknown variant"),
             (format!("{walk}step = 1.0\ntehter = 5"), "line 8: walk.tehter: unknown field `tehter`"),
@@ -208,10 +234,54 @@ mod tests {
                 "line 7: walk.at_tether: only",
             ),
             (format!("{walk}step = 1.0\n[run]\ntether = 5"), "line 9: run.tether: unknown field `tether`"),
-            (format!("{walk}step = 1.0\n[tallies]\nlimits = [1.0, 'a']"), "line 9: tallies.limits: invalid type"),
+            (
+                format!("{walk}step = 1.0\n[tallies]\nlimits = [1.0, 'a']"),
+                "line 9: tallies.limits: must be a number, such as 0.5, and is \"a\"",
+            ),
             (format!("{walk}step = 1.0\nwalk.x = 1"), "line 8: walk.walk: unknown field `walk`"),
             (format!("{walk}step = 1.0\n[wlak]\nstep = 1.0"), "line 8: wlak: unknown field `wlak`"),
             (format!("{walk}step = 1e-400"), "line 7: walk.step: 1e-400 is too small"),
+            (
+                format!("{walk}step = 1.0\n[run]\nblock = 99999999999"),
+                "line 9: run.block: must be a whole number up to",
+            ),
+            (
+                format!("{walk}step = 1.0\n[run]\nseed = 1979-05-27"),
+                "line 9: run.seed: must be a whole number, 0 or more, and is the date 1979",
+            ),
+            (
+                format!("{walk}step = 1.0\n[run]\nprecision = 3"),
+                "line 9: run.precision: must be \"certified\" or \"fast\", and is 3",
+            ),
+            (
+                format!("{walk}step = 1.0\nat_walls = true"),
+                "line 8: walk.at_walls: must be \"redraw\", \"reject\" or \"reflect\", and is true",
+            ),
+            (format!("{walk}step = 1.0\nstart = 3"), "line 8: walk.start: must be \"anchor\" or \"visible\", and is 3"),
+            ("[walk]\nkind = 3".to_owned(), "line 5: walk.kind: must be \"uniform\", "),
+            ("walk = 3".to_owned(), "line 4: scene.walk: unknown field `walk`"),
+            (format!("{walk}step = [1.0]"), "line 7: walk.step: must be a number, such as 0.5, and is a list"),
+            (
+                walk.replace("5", "5.5") + "step = 1.0",
+                "line 6: walk.steps: must be a whole number, 0 or more, and is 5.5",
+            ),
+            (
+                format!("{walk}step = 1.0\n[outputs]\ntraces = 1"),
+                "line 9: outputs.traces: must be true or false, and is 1",
+            ),
+            (
+                format!("{walk}step = 1.0\n[tallies]\nlimits = 3"),
+                "line 9: tallies.limits: must be a list in brackets, and is 3",
+            ),
+            (
+                format!("{walk}step = 1.0\n[run.block]\na = 1"),
+                "line 8: run.block: must be a whole number, 0 or more, and is a table",
+            ),
+            (format!("run = 3\n{walk}step = 1.0"), "line 4: scene.run: unknown field `run`"),
+            (
+                format!("{walk}step = 1.0\n[run]\ntraces = 1e3"),
+                "line 9: run.traces: must be a whole number, 0 or more, and is 1000.0",
+            ),
             (format!("{walk}step = 1.0 1"), "line 7: "),
             (format!("{walk}step = 1.0\nsteps = 7"), "line 8: duplicate key"),
         ] {
@@ -221,6 +291,10 @@ mod tests {
         let what =
             Plan::parse("[scene]\nfile = \"a.wkt\"\nanchor = \"here\"\n[walk]\nkind = \"given\"\nfile = \"a.csv\"");
         assert_eq!(what.unwrap_err().what(), "line 3: scene.anchor must be [x, y], a list of such, or { sample = N }");
+        let what = Plan::parse(&format!("scene = {{ file = 3 }}\n{walk}step = 1.0")).unwrap_err().what();
+        assert_eq!(what, "line 1: scene.file: must be a text in quotes, and is 3");
+        let what = Plan::parse(&format!("run = 3\n[scene]\nbuilt_in = 'rooms'\n{walk}step = 1.0")).unwrap_err().what();
+        assert_eq!(what, "line 1: run: must be a table with keys of its own, and is 3");
         let walk = walk.replace("steps", "stpes");
         let what = Plan::parse(&format!("[scene]\nbuilt_in = 'rooms'\nanchor = {{ sample = 3 }}\n{walk}step = 1.0"));
         assert!(what.unwrap_err().what().starts_with("line 6: walk.stpes: unknown field `stpes`"));

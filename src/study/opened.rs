@@ -7,17 +7,16 @@ use std::sync::Arc;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::free_space::FreeSpace;
-use super::plan::{AnchorPlan, Plan};
+use super::models::models;
+use super::plan::Plan;
 use super::plan_error::PlanError;
-use super::random::{Purpose, Random};
 use super::shard::Shard;
 use super::tally::{Setting, Tallies};
 use super::walk::Walks;
 use crate::example::{BuiltIn, NameError};
 use crate::geometry::{Shown, number};
 use crate::read_file::open;
-use crate::scene::{AnchorError, Centre, Model, Scene, read_scene_with};
+use crate::scene::{Centre, Model, Scene, read_scene_with};
 use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
 
 /// A study that can be run.
@@ -342,32 +341,6 @@ fn counted(mut plan: Plan, folder: &Path) -> Result<Plan, PlanError> {
     };
     plan.run.traces = Some(count);
     plan.checked()
-}
-
-/// The scene with each of the plan's anchors.
-fn models(plan: &Plan, scene: &Scene) -> Result<Vec<Arc<Model>>, PlanError> {
-    let wrong = |e: AnchorError| PlanError::at_key("scene.anchor", e);
-    let model = |anchor: Option<DVec2>| Model::new(scene.clone(), anchor).map_err(wrong);
-    // All share the walls.
-    let tied = |first: &Model, at: DVec2| first.tied(at).map(Arc::new).map_err(wrong);
-    match &plan.scene.anchor {
-        None => Ok(vec![Arc::new(model(None)?)]),
-        Some(AnchorPlan::One(at)) => Ok(vec![Arc::new(model(Some((*at).into()))?)]),
-        Some(AnchorPlan::Several(all)) => {
-            let first = model(all.first().map(|&at| at.into()))?;
-            all.iter().map(|&at| tied(&first, at.into())).collect()
-        }
-        Some(AnchorPlan::Sampled(sampled)) => {
-            let whole = model(None)?;
-            let free = FreeSpace::new(&whole)
-                .ok_or_else(|| PlanError::new("scene.anchor: no free space can be found to sample anchors from"))?;
-            let draw = |i: u32| {
-                let mut random = Random::new(plan.run.seed, Purpose::Anchor, u64::from(i));
-                tied(&whole, free.draw(&mut random))
-            };
-            (0..sampled.sample).map(draw).collect()
-        }
-    }
 }
 
 /// Part of every study's identity. The number is to be raised whenever traces are drawn, counted or estimated in

@@ -11,7 +11,7 @@ use csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
 use rayon::prelude::*;
 
 use super::csv_lines::{LINE_MAX, LINE_TOO_LONG, Watched, first_line, is_plain, line_ends, pieces, whole_lines};
-use super::csv_rows::{Chunk, Header};
+use super::csv_rows::{Chunk, Header, names_anchor};
 use super::gather::Gatherer;
 use crate::read_error::{Fault, Place, ReadError};
 
@@ -103,7 +103,7 @@ impl<R: Read> CsvRows<R> {
     }
 
     /// Whether the rows say where the anchor is. Looks at the header without reading on; where there is none, or none
-    /// that will do, [`read`](Self::read) says so.
+    /// that will do, [`read`](Self::read) says so, unless it names a column of the anchor's.
     pub(super) fn moves_anchor(&mut self) -> Result<bool, ReadError> {
         if self.header.is_none()
             && let Input::Blocks(input, start) = &mut self.input
@@ -118,8 +118,22 @@ impl<R: Read> CsvRows<R> {
             *start = [block, rest].concat();
             let mut first = ByteRecord::new();
             let mut parser = ReaderBuilder::new().has_headers(false).flexible(true).from_reader(&start[..]);
-            let found = parser.read_byte_record(&mut first).is_ok();
-            return Ok(found && Header::new(first.iter()).is_ok_and(|header| header.moves_anchor()));
+            if parser.read_byte_record(&mut first).is_err() {
+                return Ok(false);
+            }
+            return match Header::new(first.iter()) {
+                Ok(header) => Ok(header.moves_anchor()),
+                // Else a rope that is not to be tied would be missed an anchor first.
+                Err(what) if names_anchor(first.iter()) => {
+                    // The parser passes over empty lines, and so does this.
+                    let byte = first.position().map_or(0, |position| position.byte()) as usize;
+                    let empty = start[byte..].iter().take_while(|b| matches!(b, b'\r' | b'\n')).count();
+                    let line = 1 + line_ends(&start[..byte + empty]);
+                    self.input = Input::Ended;
+                    Err(Fault::new(Place::line(line), what).in_file(&self.path))
+                }
+                Err(_) => Ok(false),
+            };
         }
         Ok(self.header.as_ref().is_some_and(Header::moves_anchor))
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::csv_lines::{LINE_MAX, LINE_TOO_LONG, first_line};
-use super::gather::{ANCHOR, Gatherer, STEP};
+use super::gather::{ANCHOR, Gatherer, STEP, meant};
 use crate::number::{NumberFault, VANISHES};
 
 /// The columns; the last may be missing.
@@ -53,6 +53,9 @@ impl Header {
         let (mut fields, mut anchor) = ([found.len(); 4], [found.len(); 2]);
         // Either alone is some other column.
         let moves = ANCHOR.iter().all(|column| found.iter().any(|name| name == column));
+        if let Some(fault) = meant(&found).filter(|_| !moves) {
+            return Err(fault);
+        }
         let columns = COLUMNS.into_iter().chain(ANCHOR.into_iter().filter(|_| moves));
         for (field, column) in fields.iter_mut().chain(&mut anchor).zip(columns) {
             let mut at = (0..found.len()).filter(|&i| found[i] == column);
@@ -112,6 +115,11 @@ impl Header {
             step: if self.fields[3] < width { Some(whole(step.as_ref(), STEP)?) } else { None },
         })
     }
+}
+
+/// Whether a header names a column that may say where the anchor is, whatever else it does.
+pub(super) fn names_anchor<'a>(mut fields: impl Iterator<Item = &'a [u8]>) -> bool {
+    fields.any(|name| ANCHOR.iter().any(|column| name.trim_ascii().eq_ignore_ascii_case(column.as_bytes())))
 }
 
 impl Chunk {

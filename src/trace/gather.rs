@@ -17,6 +17,17 @@ pub(super) const STEP: &str = "step";
 /// The columns that may say where the anchor is.
 pub(super) const ANCHOR: [&str; 2] = ["bx", "by"];
 
+/// What is said where columns have the names of the anchor's in other letters: passed over, ropes would be tied that
+/// are not.
+pub(super) fn meant(names: &[impl AsRef<str>]) -> Option<String> {
+    let like = |column: &str| names.iter().map(AsRef::as_ref).find(|name| name.eq_ignore_ascii_case(column));
+    let [bx, by] = [like(ANCHOR[0])?, like(ANCHOR[1])?];
+    Some(format!(
+        "the columns {bx} and {by}: write bx and by if they say where the rope's anchor is, and give them other names \
+         if not"
+    ))
+}
+
 /// Rows on their way into traces.
 #[derive(Default)]
 pub(super) struct Gatherer {

@@ -12,7 +12,7 @@ use arrow_schema::{DataType, Schema};
 use parquet::basic::Compression;
 use parquet::file::metadata::ParquetMetaData;
 
-use super::gather::{ANCHOR, STEP};
+use super::gather::{ANCHOR, STEP, meant};
 
 /// The columns; those from the fourth on may be missing.
 const COLUMNS: [&str; 6] = ["trace", "x", "y", STEP, ANCHOR[0], ANCHOR[1]];
@@ -33,6 +33,10 @@ fn read(moves_anchor: bool) -> impl Iterator<Item = &'static str> {
 /// The numbers of the columns in a schema, whose types must fit.
 pub(super) fn find(schema: &Schema) -> Result<Vec<usize>, String> {
     let mut columns = Vec::new();
+    let names: Vec<&String> = schema.fields().iter().map(|field| field.name()).collect();
+    if let Some(fault) = meant(&names).filter(|_| !moves_anchor(schema)) {
+        return Err(fault);
+    }
     for name in read(moves_anchor(schema)) {
         let mut found = (0..schema.fields().len()).filter(|&i| schema.field(i).name() == name);
         let number = match (found.next(), found.next()) {

@@ -135,6 +135,25 @@ mod tests {
         Ok(gatherer.take(usize::MAX, usize::MAX, true).unwrap_or_default())
     }
 
+    #[test]
+    fn columns_of_the_anchor_in_other_letters_are_named() {
+        let ids = || Arc::new(UInt64Array::from(vec![0])) as ArrayRef;
+        let of = |bx, by| {
+            read(&bytes(vec![
+                ("trace", ids()),
+                ("x", f64s(&[1.0])),
+                ("y", f64s(&[1.0])),
+                (bx, f64s(&[0.0])),
+                (by, f64s(&[0.0])),
+            ]))
+        };
+        for [bx, by] in [["BX", "BY"], ["bx", "By"]] {
+            let told = of(bx, by).unwrap_err();
+            assert!(told.contains(&format!("the columns {bx} and {by}: write bx and by")), "{told}");
+        }
+        assert!(of("BX", "b").is_ok());
+    }
+
     fn f64s(values: &[f64]) -> ArrayRef {
         Arc::new(Float64Array::from(values.to_vec()))
     }

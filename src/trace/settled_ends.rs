@@ -6,6 +6,7 @@ use super::settled::Broken;
 use super::{End, SettledTrace, Trace, Violation, settle};
 use crate::geometry::{CoordinateFault, Shown, TracePoint, check_points};
 use crate::scene::{AnchorError, Model};
+use crate::words::plainly;
 
 /// The paths of both ends of a rope, ready to be evaluated.
 ///
@@ -22,8 +23,9 @@ pub struct SettledEnds {
 pub enum EndsFault {
     /// Not as many points for one end as for the other.
     #[error(
-        "trace {trace}: the free end has {free} points, the anchor {anchor}; both move in every step, so give both as \
-        many: the same point again where one rests"
+        "trace {trace}: the free end has {}, the anchor {anchor}; both move in every step, so give both as many: the \
+         same point again where one rests",
+        plainly(*free as u64, "point", "points")
     )]
     Lengths {
         /// The trace's number.

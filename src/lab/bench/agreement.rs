@@ -5,6 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use super::contender::Contender;
 use crate::engine::Promise;
 use crate::rope::{Side, TraceRecord};
+use crate::words::plainly;
 
 /// Two engines that promise the same results and gave different ones.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -60,7 +61,7 @@ impl Agreement {
             if by.promise() == Promise::Events {
                 agree(&mut self.events[i], by, record, events(record), |ours, theirs| match (ours.0, theirs.0) {
                     (ours, theirs) if ours == theirs => format!("its {ours} events are different ones"),
-                    (ours, theirs) => format!("{ours} and {theirs} events"),
+                    (ours, theirs) => format!("{ours} and {}", plainly(theirs as u64, "event", "events")),
                 })?;
             }
         }

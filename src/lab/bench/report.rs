@@ -28,9 +28,9 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Setting { traces, steps, seed, .. } = self.base;
         let runs = counted(self.plan.repeats as u64, "run", "runs");
-        let [traces, steps] = [traces, steps as u64].map(grouped);
+        let [traces, steps] = [counted(traces, "trace", "traces"), counted(steps as u64, "step", "steps")];
         f.write_str(&head(&self.environment))?;
-        writeln!(f, "work      {traces} traces of {steps} steps, seed {seed}; {runs} each, interleaved")?;
+        writeln!(f, "work      {traces} of {steps}, seed {seed}; {runs} each, interleaved")?;
         f.write_str(&match self.sweep {
             None => side_by_side(&self.base, &self.measured.rows),
             Some(sweep) => swept(sweep, &self.base, &self.measured.rows),

@@ -13,7 +13,7 @@ use super::still::Plot;
 use super::theme::Tone;
 use super::trace::TraceStyle;
 use super::{DrawError, Drawing};
-use crate::picture::label::count;
+use crate::picture::label::counted;
 use crate::picture::svg::{Svg, px};
 
 /// The most points of all moments' ropes together, about: a megabyte.
@@ -49,8 +49,8 @@ impl Drawing<'_> {
         canvas.trace(&dragged.points, dragged.points.len(), end, &TraceStyle { tone: Tone::Trace(0), points: false });
         canvas.play(&film, anchor, corners);
         canvas.anchor(anchor);
-        let steps = count(dragged.points.len() as u64 - 1);
-        Ok(plot.finish(self.theme, &[format!("Trace {}, {steps} steps", dragged.record.trace)], inside, &key))
+        let steps = counted(dragged.points.len() as u64 - 1, "step", "steps");
+        Ok(plot.finish(self.theme, &[format!("Trace {}, {steps}", dragged.record.trace)], inside, &key))
     }
 }
 

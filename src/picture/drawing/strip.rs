@@ -72,6 +72,7 @@ impl Drawing<'_> {
             }
         });
         let heading = match (from, to) {
+            (1, 1) if all == 1 => format!("Trace {trace}: its one event"),
             (1, to) if to == all => format!("Trace {trace}: all its {} events", count(all as u64)),
             _ => {
                 let left_out = count((all - panels.len()) as u64);

@@ -2,6 +2,7 @@
 
 use crate::number::{self, NumberFault, VANISHES};
 use crate::read_error::{Fault, Place};
+use crate::words::plainly;
 
 /// An entity, or any other thing that starts with code 0: its kind, and the groups up to the next one.
 #[derive(Debug, Clone)]
@@ -138,7 +139,10 @@ impl<'a> Entities<'a> {
                 }
                 Some(group) => entity.groups.push(group),
                 None => {
-                    let what = format!("the file ends after {} lines without 0, EOF: it is cut off", self.line);
+                    let what = format!(
+                        "the file ends after {} without 0, EOF: it is cut off",
+                        plainly(self.line as u64, "line", "lines")
+                    );
                     return Err(Fault::new(Place::line(entity.line), what));
                 }
             }

@@ -202,7 +202,7 @@ fn broken_hatches_are_refused() {
         (broken("93=1 72=2 10=0 20=0 40=-1 50=0 51=9"), "radius -1; it must not be negative"),
         (broken("93=1 72=2 10=0 20=0 40=1 50=nan 51=9"), "NaN is not a finite number"),
         (broken("93=1 72=1 10=0 20=0 11=1e200 21=0"), "1e200 is too large for exact products"),
-        (broken("93=1 72=4 94=3 40=0 10=0 20=0"), "1 knots for 1 control points; degree 3 needs"),
+        (broken("93=1 72=4 94=3 40=0 10=0 20=0"), "1 knot for 1 control point; degree 3 needs"),
         (broken("93=1 72=4 94=3 40=0 10=0 20=0 10=1"), "2 x and 1 y of control points"),
     ] {
         let what = parsed(&file("", &[], &entity)).unwrap_err();

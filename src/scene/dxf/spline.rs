@@ -1,5 +1,6 @@
 //! Splines as Bezier curves.
 
+use crate::words::plainly;
 use glam::DVec2;
 
 /// The highest degree that is taken. CAD programs make cubic ones and write at most this.
@@ -18,7 +19,9 @@ pub(super) fn beziers(degree: usize, knots: &[f64], points: &[DVec2]) -> Result<
     if points.len() <= degree || knots.len() != points.len() + degree + 1 {
         let (knots, points, more) = (knots.len(), points.len(), degree + 1);
         let right = format!("degree {degree} needs at least {more} points and {more} knots more than points");
-        return Err(format!("{knots} knots for {points} control points; {right}"));
+        let [knots, points] =
+            [plainly(knots as u64, "knot", "knots"), plainly(points as u64, "control point", "control points")];
+        return Err(format!("{knots} for {points}; {right}"));
     }
     if let Some(pair) = knots.windows(2).find(|pair| pair[0].partial_cmp(&pair[1]).is_none_or(|order| order.is_gt())) {
         return Err(format!("the knot {} comes before {}; knots must ascend", pair[0], pair[1]));

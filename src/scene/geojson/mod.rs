@@ -16,6 +16,7 @@ use super::{Inside, Object, Scene, geographic, layers};
 use crate::geometry::check_point;
 use crate::read_error::{Fault, Place};
 use crate::read_file::{SCENE_MAX, read_text};
+use crate::words::plainly;
 use properties::Kept;
 
 /// GeoJSON.
@@ -196,6 +197,8 @@ fn point(position: &Position, place: &Place) -> Result<DVec2, Fault> {
 fn point_of(position: &Position) -> Result<DVec2, String> {
     match position.as_slice() {
         [x, y, ..] => check_point(DVec2::new(*x, *y)).map_err(|fault| fault.to_string()),
-        short => Err(format!("a position of {} numbers; it needs two, x and y", short.len())),
+        short => {
+            Err(format!("a position of {}; it needs two, x and y", plainly(short.len() as u64, "number", "numbers")))
+        }
     }
 }

@@ -83,7 +83,7 @@ fn faults_of_positions_name_their_place() {
     let g = |kind, coordinates| features(&["null", &geometry(kind, coordinates)]);
     let large = "is too large for exact products: coordinates must lie within 2^500 (3.27e150) of zero";
     let small = "is too small for exact products: coordinates must be 0 or at least 2^-450 (3.4e-136) in magnitude";
-    let short = "a position of 1 numbers; it needs two, x and y";
+    let short = "a position of 1 number; it needs two, x and y";
     for (text, expected) in [
         (g("LineString", "[[0,0],[1e200,0]]"), format!("feature 1, position 1: 1e200 {large}")),
         (

@@ -10,6 +10,7 @@ use super::super::pen::{Drawn, Pen};
 use super::length::{Along, length};
 use super::path;
 use super::style::{Style, Value};
+use crate::words::plainly;
 
 /// The elements that are drawn as walls.
 pub(super) const SHAPES: [&str; 7] = ["circle", "ellipse", "line", "path", "polygon", "polyline", "rect"];
@@ -129,7 +130,10 @@ impl Shape<'_, '_, '_> {
         let numbers: Result<Vec<f64>, _> = NumberListParser::from(text).collect();
         let numbers = numbers.map_err(|e| format!("points: {e}"))?;
         if numbers.len() % 2 == 1 {
-            return Err(format!("points: {} numbers; each point needs two, x and y", numbers.len()));
+            return Err(format!(
+                "points: {}; each point needs two, x and y",
+                plainly(numbers.len() as u64, "number", "numbers")
+            ));
         }
         Ok(numbers.chunks_exact(2).map(|xy| DVec2::new(xy[0], xy[1])).collect())
     }

@@ -126,7 +126,7 @@ fn what_does_not_go_with_two_ends_is_refused() {
         (format!("{both} --anchor 1,1"), "--anchor is for ropes that are tied"),
         (format!("{both} --anchor-trace anchor.csv"), "leave --anchor-trace or these columns out"),
         ("check --scene s.geojson --traces both.csv".into(), "both.csv: it has columns bx and by"),
-        ("draw --scene s.geojson --traces both.csv --animate --out p.svg".into(), "give --step"),
+        ("draw --scene s.geojson --traces both.csv --animate --out p.svg".into(), "give --step K"),
         ("draw --scene s.geojson --traces both.csv --frames --out p.svg".into(), "in trace 2 the anchor moves"),
         ("draw --scene s.geojson --traces both.csv --trace 9 --out p.svg".into(), "there is no trace 9"),
         ("eval --scene s.geojson --traces free.csv --anchor-trace none.csv".into(), "cannot read none.csv"),
@@ -157,6 +157,38 @@ fn what_does_not_go_with_two_ends_is_refused() {
     folder.refused(2, "eval --scene s.geojson --traces nan.csv", &["nan.csv: line 3: column by: inf is not"]);
     folder.write("two.csv", "trace,x,y,bx,by,by\n0,1,1,0,0,0\n");
     folder.refused(2, "eval --scene s.geojson --traces two.csv", &["two columns by"]);
+    folder.write("one.csv", "trace,x,y\n2,0,-1\n");
+    folder.refused(
+        2,
+        "eval --scene s.geojson --traces one.csv --anchor-trace anchor.csv",
+        &["trace 2: the free end has 1 point, the anchor 5;"],
+    );
+}
+
+/// Where no anchor is marked: what is wrong with columns of the anchor's is said, and not that there is none to tie to.
+#[test]
+fn columns_of_the_anchor_that_will_not_do_are_named_first() {
+    let folder = Folder::new();
+    folder.write("w.wkt", "LINESTRING (1 1, 2 2)");
+    for (name, text, says) in [
+        ("less.csv", "trace,x,bx,by\n0,1,0,0\n", "less.csv: line 1: no column y in the header"),
+        ("twice.csv", "\ntrace,x,y,bx,by,bx\n0,1,1,0,0,0\n", "twice.csv: line 2: two columns bx in the header"),
+        ("large.csv", "trace,x,y,BX,BY\n0,1,1,0,0\n", "large.csv: line 1: the columns BX and BY: write bx and by if"),
+        ("mixed.csv", "trace,x,y,bx,By\n0,1,1,0,0\n", "mixed.csv: line 1: the columns bx and By: write bx and by if"),
+        ("row.csv", "trace,x,y,bx,by\n0,1,1,0,a\n", "row.csv: line 2: column by: \"a\" is not a number"),
+        ("semi.csv", "trace;x;y;bx;by\n0;1;1;0;0\n", "w.wkt: no anchor; give --anchor"),
+    ] {
+        folder.write(name, text);
+        for command in ["eval", "draw --out p.svg"] {
+            folder.refused(2, &format!("{command} --scene w.wkt --traces {name}"), &[says]);
+        }
+    }
+    // Where an anchor is given it is no less wrong.
+    let given = "eval --scene w.wkt --anchor 0,0 --traces";
+    folder.refused(2, &format!("{given} large.csv"), &["the columns BX and BY: write bx and by"]);
+    folder.refused(2, &format!("{given} semi.csv"), &["semi.csv: line 1: ", "separated by semicolons"]);
+    folder.write("other.csv", "trace,x,y,BX,b\n0,1,1,0,0\n");
+    folder.done(&format!("{given} other.csv"));
 }
 
 #[test]
@@ -198,6 +230,12 @@ fn pictures_show_both_ends() {
     assert!(folder.read("a.svg") == folder.read("b.svg"));
     folder.done("draw --scene s.geojson --traces both.csv --trace 2,3 --out c.html");
     assert!(folder.text("c.html").contains("trace 3 and its rope"));
+    // A page that does not play says so, and what there is instead.
+    let told = folder.done("draw --scene s.geojson --traces both.csv --out d.html").stderr;
+    assert!(
+        told.contains("note: d.html shows the rope after a step and does not play it") && told.contains("--step K")
+    );
+    assert!(!folder.text("d.html").contains("<script>"));
 }
 
 /// The worked example: its commands, what it says of the events and of the rope, and its pictures.

@@ -98,7 +98,7 @@ fn faults_in_grid_maps_name_line_and_column() {
         ("type octile\nwidth 2\nheight 1\nmap\n..\n", &["m.map: line 2: ", "width 2", "height 512"]),
         ("type octile\nheight 1\nwidth 2\nmap\n.?\n", &["m.map: line 5, column 2: '?' is no cell", ". G S", "@ O T W"]),
         ("type octile\nheight 1\nwidth 2\nmap\n...\n", &["m.map: line 5, column 3: ", "3 cells", "width 2"]),
-        ("type octile\nheight 2\nwidth 2\nmap\n..\n", &["m.map: line 6: ", "after 1 rows", "height 2"]),
+        ("type octile\nheight 2\nwidth 2\nmap\n..\n", &["m.map: line 6: ", "after 1 row;", "height 2"]),
         ("type octile\nheight 1\nwidth 2\nmap\n..\n..\n", &["m.map: line 6: ", "after the last", "height 1"]),
     ] {
         refused("m.map", text, parts);
