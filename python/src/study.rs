@@ -41,7 +41,7 @@ impl Study {
     fn of_text(py: Python<'_>, text: &str, is_json: bool, base: PathBuf) -> PyResult<Self> {
         let open = |_: &Work| {
             let plan = match is_json {
-                true => serde_json::from_str::<Plan>(text).map_err(|error| Fault::new("StudyError", plain(&error)))?,
+                true => Plan::from_json(text)?,
                 false => Plan::parse(text)?,
             };
             let study = study::Study::open(plan, &base)?;
@@ -153,12 +153,6 @@ pub(crate) fn look_at_study(py: Python<'_>, folder: PathBuf, base: Option<PathBu
         serde_json::to_string(&state.summary(&study)).map_err(|error| Fault::new("StudyError", error))
     };
     compute::run(py, look, |_, _| Ok(()))
-}
-
-/// What is wrong with a study that is no file: without the line and column of a text that nobody has seen.
-fn plain(error: &serde_json::Error) -> String {
-    let text = error.to_string();
-    format!("the plan: {}", text.split(" at line ").next().unwrap_or(&text))
 }
 
 /// The study that is run when none is given, as TOML.

@@ -128,6 +128,44 @@ impl StudyFile {
     }
 }
 
+impl Plan {
+    /// The study that a JSON object describes, with the keys of a study's file; `null` stands for one that is left out.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with its form: the key, what it must be, and what it is.
+    ///
+    /// ```
+    /// use tautline::study::Plan;
+    /// let plan = r#"{"scene": {"built_in": "rooms"}, "walk": {"kind": "uniform", "step": "far", "steps": 9}}"#;
+    /// let told = Plan::from_json(plan).unwrap_err().what();
+    /// assert_eq!(told, "walk.step: must be a number, such as 0.5, and is \"far\"");
+    /// ```
+    pub fn from_json(text: &str) -> Result<Plan, PlanError> {
+        serde_json::from_str::<Plan>(text).map_err(|error| {
+            let value = serde_json::from_str(text).ok().map(without_nulls);
+            match value.and_then(|value| Table::try_from(value).ok()) {
+                Some(table) => fault(&table),
+                // Lines of an object that a program wrote are nobody's.
+                None => {
+                    PlanFault::Value(error.to_string().split(" at line ").next().unwrap_or_default().to_owned()).into()
+                }
+            }
+        })
+    }
+}
+
+/// The same without what is left out.
+fn without_nulls(value: serde_json::Value) -> serde_json::Value {
+    match value {
+        serde_json::Value::Object(fields) => {
+            let kept = fields.into_iter().filter(|(_, value)| !value.is_null());
+            kept.map(|(name, value)| (name, without_nulls(value))).collect()
+        }
+        other => other,
+    }
+}
+
 /// What is wrong with the form of a table, with the key at fault.
 fn fault(table: &Table) -> PlanError {
     let written = toml::to_string(table).map_err(|e| PlanFault::Value(e.to_string()));
