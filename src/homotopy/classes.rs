@@ -90,6 +90,11 @@ impl Classes {
         classes
     }
 
+    /// The model in which they are.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
     /// The obstacles about which ropes can be wound, from left to right by where their cuts start.
     pub fn cuts(&self) -> &[Cut] {
         &self.cuts

@@ -40,7 +40,9 @@ const STEPS: usize = 1 << 16;
 /// ```
 pub fn result_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec<RecordBatch>) {
     let (y_down, labels) = (scene.y_down(), &Labels::of(scene));
-    batches(ResultColumns::new(labels), records.iter(), |columns, record| columns.push(y_down, record, labels))
+    batches(ResultColumns::new(labels, false), records.iter(), |columns, record| {
+        columns.push(y_down, record, labels, None)
+    })
 }
 
 /// Events as tables in memory, one row an event: the columns, and the rows in batches, none if there are no events.
@@ -97,7 +99,7 @@ pub(super) fn whole<C: Columns>(mut columns: C) -> (SchemaRef, Vec<RecordBatch>)
     (schema, vec![batch])
 }
 
-fn batches<C: Columns, R>(
+pub(super) fn batches<C: Columns, R>(
     mut columns: C,
     rows: impl Iterator<Item = R>,
     push: impl Fn(&mut C, R),

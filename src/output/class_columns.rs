@@ -1,0 +1,155 @@
+//! Classes of ropes as columns: the word, and how often the rope winds about each obstacle.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use arrow_array::builder::{
+    ArrayBuilder, Int64Builder, ListBuilder, StringBuilder, StructBuilder, UInt32Builder, UInt64Builder,
+};
+use arrow_array::{ArrayRef, RecordBatch};
+use arrow_schema::{DataType, Field, Fields, SchemaRef};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::batches::batches;
+use super::tables::Columns;
+use crate::homotopy::{Class, Classes};
+use crate::rope::TraceRecord;
+use crate::trace::SettledTrace;
+
+/// What the columns are called.
+pub(super) const NAMES: [&str; 2] = ["class", "windings"];
+
+/// How often a rope winds about an obstacle.
+#[derive(Serialize)]
+pub(super) struct Winding {
+    obstacle: u32,
+    turns: i64,
+}
+
+/// The windings of a class that is as a picture shows it.
+pub(super) fn windings(class: &Class) -> Vec<Winding> {
+    class.windings().map(|(obstacle, turns)| Winding { obstacle, turns }).collect()
+}
+
+/// The two fields of CSV; both empty for a rope without a class.
+pub(super) fn csv(out: &mut impl Write, class: Option<&Class>) -> io::Result<()> {
+    let Some(class) = class else { return out.write_all(b",,") };
+    write!(out, ",{class},")?;
+    for (i, Winding { obstacle, turns }) in windings(class).into_iter().enumerate() {
+        write!(out, "{}{obstacle} {turns}", if i == 0 { "" } else { ";" })?;
+    }
+    Ok(())
+}
+
+fn winding_fields() -> Fields {
+    Fields::from(vec![Field::new("obstacle", DataType::UInt32, false), Field::new("turns", DataType::Int64, false)])
+}
+
+fn element() -> Field {
+    Field::new("element", DataType::Struct(winding_fields()), false)
+}
+
+/// Both columns, with nulls for ropes without a class.
+pub(super) struct ClassColumns {
+    class: StringBuilder,
+    windings: ListBuilder<StructBuilder>,
+}
+
+impl Default for ClassColumns {
+    fn default() -> Self {
+        let parts: Vec<Box<dyn ArrayBuilder>> = vec![Box::new(UInt32Builder::new()), Box::new(Int64Builder::new())];
+        let windings = StructBuilder::new(winding_fields(), parts);
+        ClassColumns { class: StringBuilder::new(), windings: ListBuilder::new(windings).with_field(element()) }
+    }
+}
+
+impl ClassColumns {
+    /// Adds a class that is as a picture shows it.
+    pub(super) fn push(&mut self, class: Option<&Class>) {
+        self.class.append_option(class.map(Class::to_string));
+        for (obstacle, turns) in class.into_iter().flat_map(Class::windings) {
+            let winding = self.windings.values();
+            winding.field_builder::<UInt32Builder>(0).expect("it is built so").append_value(obstacle);
+            winding.field_builder::<Int64Builder>(1).expect("it is built so").append_value(turns);
+            winding.append(true);
+        }
+        self.windings.append(class.is_some());
+    }
+
+    pub(super) fn fields(&self) -> [Field; 2] {
+        let windings = DataType::List(Arc::new(element()));
+        [Field::new(NAMES[0], DataType::Utf8, true), Field::new(NAMES[1], windings, true)]
+    }
+
+    pub(super) fn take(&mut self) -> [ArrayRef; 2] {
+        [Arc::new(self.class.finish()), Arc::new(self.windings.finish())]
+    }
+
+    fn len(&self) -> usize {
+        self.class.len().max(self.windings.values_ref().len())
+    }
+}
+
+/// Classes with the numbers of their traces.
+#[derive(Default)]
+struct ClassRows {
+    trace: UInt64Builder,
+    classes: ClassColumns,
+}
+
+impl Columns for ClassRows {
+    fn fields(&self) -> Vec<Field> {
+        [Field::new("trace", DataType::UInt64, false)].into_iter().chain(self.classes.fields()).collect()
+    }
+
+    fn len(&self) -> usize {
+        self.classes.len()
+    }
+
+    fn take(&mut self) -> Vec<ArrayRef> {
+        [Arc::new(self.trace.finish()) as ArrayRef].into_iter().chain(self.classes.take()).collect()
+    }
+}
+
+/// The classes of ropes as tables in memory, one row a trace: `trace`, `class` and `windings`, a list of structs of
+/// `obstacle` and `turns`; both null where the trace crosses a wall. They are as a picture shows them. O(events), and
+/// as [`Classes::of`] for each, on all threads.
+///
+/// # Panics
+///
+/// As [`Classes::of_record`], if a record is not that of its trace.
+///
+/// ```
+/// use std::sync::Arc;
+/// use tautline::engine::{Cpu, Engine, Job};
+/// use tautline::example::{Walker, floor_plan, settled_walks};
+/// use tautline::homotopy::Classes;
+/// use tautline::output::class_batches;
+/// use tautline::scene::Model;
+///
+/// let model = Arc::new(Model::new(floor_plan(), None)?);
+/// let walks = settled_walks(&model, Walker { step: 0.3, steps: 50, seed: 1 }, 3);
+/// let records = Cpu::new(model.clone()).evaluate(&walks, &Job::new())?;
+/// let (schema, batches) = class_batches(&Classes::new(&model), &walks, &records);
+/// assert_eq!((schema.field(1).name().as_str(), batches[0].num_rows()), ("class", 3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn class_batches(
+    classes: &Classes,
+    traces: &[SettledTrace],
+    records: &[TraceRecord],
+) -> (SchemaRef, Vec<RecordBatch>) {
+    let all = shown(classes, traces, records);
+    batches(ClassRows::default(), records.iter().zip(&all), |columns, (record, class)| {
+        columns.trace.append_value(record.trace);
+        columns.classes.push(class.as_ref());
+    })
+}
+
+/// The classes of ropes as a picture shows them, on all threads.
+pub(super) fn shown(classes: &Classes, traces: &[SettledTrace], records: &[TraceRecord]) -> Vec<Option<Class>> {
+    let y_down = classes.model().scene().y_down();
+    let class = |(trace, record)| classes.of_record(trace, record).map(|class| class.shown(y_down));
+    traces.par_iter().zip(records).map(class).collect()
+}
