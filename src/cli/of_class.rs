@@ -82,10 +82,10 @@ impl ClassArgs {
             first.truncate(MOST - 1);
             first.push(one);
         }
-        let shown =
-            if found.count > first.len() as u64 { format!("; {} are drawn", first.len()) } else { String::new() };
         let of = counted(found.of, "trace", "traces");
-        say!("{} of {of} have ropes of class {}{shown}", found.count, class.shown(y_down));
+        let drawn = first.len() as u64;
+        let shown = if found.count > drawn { format!(", of which {drawn} are drawn") } else { String::new() };
+        say!("class {}: {} of {of}{shown}", class.shown(y_down), found.count);
         Ok(Some(first.into_iter().unzip()))
     }
 }
