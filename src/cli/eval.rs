@@ -42,8 +42,8 @@ pub(crate) struct Args {
     /// Where to write every wrap and unwrap: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
-    /// Also write the class of each rope: which way it lies among the obstacles, as a word, and how often it winds about
-    /// each of them
+    /// Also write the class of each rope: which way it lies among the obstacles, as a word, and how often it winds
+    /// about each of them
     #[arg(long, requires = "out")]
     class: bool,
     #[command(flatten)]

@@ -160,8 +160,8 @@ impl Classes {
         class
     }
 
-    /// The letters of a straight leg, but for those of the wall ends at its ends. `side` says on which side of it a wall
-    /// end lies that it touches.
+    /// The letters of a straight leg, but for those of the wall ends at its ends. `side` says on which side of it a
+    /// wall end lies that it touches.
     fn leg(&self, class: &mut Class, from: DVec2, to: DVec2, side: impl Fn(DVec2) -> Side) {
         let (low, high) = (from.x.min(to.x), from.x.max(to.x));
         let begin = self.cuts.partition_point(|cut| cut.at.x < low);

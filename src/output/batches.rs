@@ -6,11 +6,13 @@ use arrow_array::RecordBatch;
 use arrow_schema::{Schema, SchemaRef};
 use rayon::prelude::*;
 
+use super::class_columns::{ClassRows, shown};
 use super::columns::{EventColumns, ResultColumns};
 use super::events::row;
 use super::labels::Labels;
 use super::step_arrays::StepArrays;
 use super::tables::Columns;
+use crate::homotopy::Classes;
 use crate::rope::{StepColumns, Steps, TraceRecord};
 use crate::scene::{Centre, Model, Scene};
 use crate::trace::SettledTrace;
@@ -59,6 +61,39 @@ pub fn event_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec<
     })
 }
 
+/// The classes of ropes as tables in memory, one row a trace: `trace`, `class` and `windings`, a list of structs of
+/// `obstacle` and `turns`; both null where the trace crosses a wall. They are as a picture shows them. O(events), and
+/// as [`Classes::of`] for each, on all threads.
+///
+/// # Panics
+///
+/// As [`Classes::of_record`], if a record is not that of its trace.
+///
+/// ```
+/// use std::sync::Arc;
+/// use tautline::engine::{Cpu, Engine, Job};
+/// use tautline::example::{Walker, floor_plan, settled_walks};
+/// use tautline::homotopy::Classes;
+/// use tautline::output::class_batches;
+/// use tautline::scene::Model;
+///
+/// let model = Arc::new(Model::new(floor_plan(), None)?);
+/// let walks = settled_walks(&model, Walker { step: 0.3, steps: 50, seed: 1 }, 3);
+/// let records = Cpu::new(model.clone()).evaluate(&walks, &Job::new())?;
+/// let (schema, batches) = class_batches(&Classes::new(&model), &walks, &records);
+/// assert_eq!((schema.field(1).name().as_str(), batches[0].num_rows()), ("class", 3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn class_batches(
+    classes: &Classes,
+    traces: &[SettledTrace],
+    records: &[TraceRecord],
+) -> (SchemaRef, Vec<RecordBatch>) {
+    let all = shown(classes, traces, records);
+    let rows = records.iter().zip(&all);
+    batches(ClassRows::default(), rows, |columns, (record, class)| columns.push(record.trace, class.as_ref()))
+}
+
 /// The rope after every step of traces as tables in memory: the columns, and the rows in batches of whole traces, none
 /// if there are no traces. They are those of a [`StepWriter`](super::StepWriter) of a Parquet file. Turns are counted
 /// about each of `centres`. O(points and events), on all threads.
@@ -99,7 +134,7 @@ pub(super) fn whole<C: Columns>(mut columns: C) -> (SchemaRef, Vec<RecordBatch>)
     (schema, vec![batch])
 }
 
-pub(super) fn batches<C: Columns, R>(
+fn batches<C: Columns, R>(
     mut columns: C,
     rows: impl Iterator<Item = R>,
     push: impl Fn(&mut C, R),

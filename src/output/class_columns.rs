@@ -3,15 +3,14 @@
 use std::io::{self, Write};
 use std::sync::Arc;
 
+use arrow_array::ArrayRef;
 use arrow_array::builder::{
     ArrayBuilder, Int64Builder, ListBuilder, StringBuilder, StructBuilder, UInt32Builder, UInt64Builder,
 };
-use arrow_array::{ArrayRef, RecordBatch};
-use arrow_schema::{DataType, Field, Fields, SchemaRef};
+use arrow_schema::{DataType, Field, Fields};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::batches::batches;
 use super::tables::Columns;
 use crate::homotopy::{Class, Classes};
 use crate::rope::TraceRecord;
@@ -93,9 +92,17 @@ impl ClassColumns {
 
 /// Classes with the numbers of their traces.
 #[derive(Default)]
-struct ClassRows {
+pub(super) struct ClassRows {
     trace: UInt64Builder,
     classes: ClassColumns,
+}
+
+impl ClassRows {
+    /// Adds the class, as a picture shows it, of the rope of that trace.
+    pub(super) fn push(&mut self, trace: u64, class: Option<&Class>) {
+        self.trace.append_value(trace);
+        self.classes.push(class);
+    }
 }
 
 impl Columns for ClassRows {
@@ -110,41 +117,6 @@ impl Columns for ClassRows {
     fn take(&mut self) -> Vec<ArrayRef> {
         [Arc::new(self.trace.finish()) as ArrayRef].into_iter().chain(self.classes.take()).collect()
     }
-}
-
-/// The classes of ropes as tables in memory, one row a trace: `trace`, `class` and `windings`, a list of structs of
-/// `obstacle` and `turns`; both null where the trace crosses a wall. They are as a picture shows them. O(events), and
-/// as [`Classes::of`] for each, on all threads.
-///
-/// # Panics
-///
-/// As [`Classes::of_record`], if a record is not that of its trace.
-///
-/// ```
-/// use std::sync::Arc;
-/// use tautline::engine::{Cpu, Engine, Job};
-/// use tautline::example::{Walker, floor_plan, settled_walks};
-/// use tautline::homotopy::Classes;
-/// use tautline::output::class_batches;
-/// use tautline::scene::Model;
-///
-/// let model = Arc::new(Model::new(floor_plan(), None)?);
-/// let walks = settled_walks(&model, Walker { step: 0.3, steps: 50, seed: 1 }, 3);
-/// let records = Cpu::new(model.clone()).evaluate(&walks, &Job::new())?;
-/// let (schema, batches) = class_batches(&Classes::new(&model), &walks, &records);
-/// assert_eq!((schema.field(1).name().as_str(), batches[0].num_rows()), ("class", 3));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn class_batches(
-    classes: &Classes,
-    traces: &[SettledTrace],
-    records: &[TraceRecord],
-) -> (SchemaRef, Vec<RecordBatch>) {
-    let all = shown(classes, traces, records);
-    batches(ClassRows::default(), records.iter().zip(&all), |columns, (record, class)| {
-        columns.trace.append_value(record.trace);
-        columns.classes.push(class.as_ref());
-    })
 }
 
 /// The classes of ropes as a picture shows them, on all threads.

@@ -40,7 +40,6 @@ fn are_usual(quantiles: &[f64]) -> bool {
     quantiles == QUANTILES
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
 fn is_zero(number: &u32) -> bool {
     *number == 0
 }
