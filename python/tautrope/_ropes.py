@@ -98,7 +98,8 @@ class Ropes:
 
         >>> import tautrope
         >>> scene = tautrope.Scene([[[-1, 0], [1, 0]]], anchor=(0, -1))
-        >>> ropes = scene.evaluate([[(3, -1), (3, 1)], [(-3, -1), (-3, 1)], [(3, -1), (3, 2), (2, 2)]])
+        >>> east, west = [(3, -1), (3, 1), (0, 1)], [(-3, -1), (-3, 1), (0, 1)]
+        >>> ropes = scene.evaluate([east, west, [*east, (-1, 2)]])
         >>> ropes.same_class(0)
         [0, 2]
         """

@@ -52,7 +52,7 @@ def test_a_rope_has_its_class_whatever_its_history(desks: Scene) -> None:
 
 
 def test_what_has_no_class(desks: Scene) -> None:
-    crossing = desks.evaluate([[(0.5, 2)], [(2, -1)]], on_violation="flag")
+    crossing = desks.evaluate([[(2, 2)], [(2, -1)]], on_violation="flag")
     assert list(crossing.classes["class"]) == [None, "e"]
     assert [len(windings) for windings in crossing.classes["windings"]] == [0, 0]
     assert crossing.same_class(0) == []

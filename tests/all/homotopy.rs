@@ -270,3 +270,68 @@ fn bends_off_all_lines(model: &Model, trace: &SettledTrace, wraps: &[(DVec2, Sid
     };
     !rope.windows(2).any(touches) && !(0..model.scene().walls().len()).any(|wall| along(model.scene().ends(wall)))
 }
+
+fn square([x, y]: [f64; 2], size: f64) -> [[[f64; 2]; 2]; 4] {
+    let corners = [[x, y], [x + size, y], [x + size, y + size], [x, y + size]];
+    [0, 1, 2, 3].map(|i| [corners[i], corners[(i + 1) % 4]])
+}
+
+fn model(walls: &[[[f64; 2]; 2]], anchor: [f64; 2]) -> Arc<Model> {
+    let walls = walls.iter().map(|wall| wall.map(DVec2::from));
+    Arc::new(Model::new(Scene::new(walls).unwrap(), Some(anchor.into())).unwrap())
+}
+
+#[test]
+fn only_what_ropes_can_be_wound_about_has_a_cut() {
+    // A room with a post and a closed box in it, in the box another post, and one more outside of the room.
+    let mut walls = [square([0.0, 0.0], 10.0), square([6.0, 6.0], 2.0)].concat();
+    walls.extend([[[2.0, 2.0], [3.0, 2.0]], [[7.0, 6.5], [7.0, 7.5]], [[12.0, 5.0], [12.0, 6.0]]]);
+    // A cross of two walls with a third one that ends on it is one obstacle.
+    walls.extend([[[2.0, 5.0], [4.0, 5.0]], [[3.0, 4.0], [3.0, 6.0]], [[4.5, 4.0], [3.5, 5.0]]]);
+    let cuts = |anchor: [f64; 2]| -> Vec<(u32, [f64; 2])> {
+        Classes::new(&model(&walls, anchor)).cuts().iter().map(|cut| (cut.obstacle, cut.at.to_array())).collect()
+    };
+    // Walls are numbered as they come: 4 ends of the room, 4 of the box, 2 of each post.
+    let cross = (14, [3.0, 6.0]);
+    assert_eq!(cuts([1.0, 1.0]), [cross, (8, [3.0, 2.0]), (4, [8.0, 8.0])]);
+    assert_eq!(cuts([6.5, 7.0]), [(10, [7.0, 7.5])]);
+    assert_eq!(cuts([11.0, 5.0]), [(0, [10.0, 10.0]), (12, [12.0, 6.0])]);
+}
+
+#[test]
+fn turns_about_a_pillar_are_counted_both_ways() {
+    let pillar = model(&square([1.0, 1.0], 1.0), [0.0, 0.0]);
+    let corners = [[3.0, 0.0], [3.0, 3.0], [0.0, 3.0], [0.0, 0.0]].map(DVec2::from);
+    for turns in [0, 1, 2, 5000] {
+        let mut points = corners.repeat(turns);
+        points.insert(0, DVec2::ZERO);
+        let there = settle(&pillar, &Trace { id: 0, points: points.clone() });
+        points.reverse();
+        let back = settle(&pillar, &Trace { id: 0, points });
+        for (trace, turns) in [(there, turns as i64), (back, -(turns as i64))] {
+            let found = class(&pillar, &trace);
+            assert_eq!(found.windings().collect::<Vec<_>>(), if turns == 0 { vec![] } else { vec![(0, turns)] });
+            let text = match turns {
+                0 => "e".to_owned(),
+                1 => "o0".to_owned(),
+                _ => format!("o0^{turns}"),
+            };
+            assert_eq!(found.to_string(), text);
+        }
+    }
+}
+
+/// A thin wall under the anchor, from which ropes leave on either side: round the wall's end they come to the same
+/// place.
+#[test]
+fn ropes_that_leave_an_anchor_on_two_sides_of_a_wall_are_of_two_classes() {
+    let wall = model(&[[[-1.0, 0.0], [1.0, 0.0]]], [0.0, 0.0]);
+    let found = |points: &[[f64; 2]]| {
+        let points = points.iter().map(|&p| p.into()).collect();
+        class(&wall, &settle(&wall, &Trace { id: 0, points })).to_string()
+    };
+    assert_eq!(found(&[[0.0, 1.0]]), "@0");
+    assert_eq!(found(&[[0.0, -1.0], [2.0, 0.0], [0.0, 1.0]]), "@1 o0");
+    assert_eq!(found(&[[0.0, -1.0], [-2.0, 0.0], [0.0, 1.0]]), "@1");
+    assert_eq!(found(&[[0.0, 1.0], [2.0, 0.0], [0.0, -1.0], [-2.0, 0.0], [0.0, 1.0]]), "@0 o0^-1");
+}
