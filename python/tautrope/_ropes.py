@@ -105,7 +105,7 @@ class Ropes:
         """
         classes = self.classes["class"]
         wanted = classes[self._place(trace)]
-        same = [] if wanted is None else np.flatnonzero(classes == wanted)
+        same: Any = [] if wanted is None else np.flatnonzero(classes == wanted)
         return [int(self["trace"][place]) for place in same]
 
     @cached_property

@@ -123,6 +123,18 @@ fn traces_that_cross_walls_have_no_class() {
 }
 
 #[test]
+fn ropes_whose_ends_both_move_have_no_class_yet() {
+    let folder = folder();
+    folder.write("t.csv", "trace,x,y,bx,by\n0,1,2,0,0\n0,3.5,2,0,1\n");
+    let refused = |args: &str, option: &str| {
+        folder.refused(2, &format!("{args} --scene s.geojson --traces t.csv"), &[option, "here the anchor moves"]);
+    };
+    refused("eval --class --out r.csv", "--class");
+    refused("draw --class e --out p.svg", "--class");
+    refused("draw --same-class 0 --out p.svg", "--same-class");
+}
+
+#[test]
 fn pictures_show_the_traces_of_one_class() {
     let folder = folder();
     let draw = |args: &str| folder.done(&format!("draw --scene s.geojson --traces t.csv {args}"));
