@@ -12,7 +12,8 @@ use rayon::prelude::*;
 use tautline::engine::{Engine, EngineKind, Precision, Reference};
 use tautline::homotopy::Classes;
 use tautline::output::{
-    ResultWriter, StepWriter, class_batches, event_batches, result_batches, step_batches, write_events, write_results,
+    ResultWriter, StepWriter, class_batches, class_change_batches, event_batches, result_batches, step_batches,
+    write_events, write_results,
 };
 use tautline::picture::{Drawing, Theme};
 use tautline::rope::{TraceRecord, replay};
@@ -190,6 +191,13 @@ impl Ropes {
         let settled = self.settled()?;
         let classes = |_: &Work| Ok(Table::of(class_batches(&self.of.classes()?, settled, &self.of.records)));
         compute::run(py, classes, |_, _| Ok(()))
+    }
+
+    /// One row for each change of a rope's class.
+    fn class_changes(&self, py: Python<'_>) -> PyResult<Table> {
+        let settled = self.settled()?;
+        let changes = |_: &Work| Ok(Table::of(class_change_batches(&self.of.classes()?, settled, &self.of.records)));
+        compute::run(py, changes, |_, _| Ok(()))
     }
 
     /// One row for the rope after every step.

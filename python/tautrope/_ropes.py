@@ -92,6 +92,20 @@ class Ropes:
         """
         return Table(self._core.classes())
 
+    @cached_property
+    def class_changes(self) -> Table:
+        """How the class of each rope changes: ``trace``, ``step``, and the ``class`` and ``windings`` after that step as
+        `classes` has them. One row for the first step of a trace, and one for each step after which the class is another.
+        Traces that cross walls have none.
+
+        >>> import tautrope
+        >>> scene = tautrope.Scene([[[-1, 0], [1, 0]]], anchor=(0, -1))
+        >>> changes = scene.evaluate([[(0, -2), (3, 0), (3, 2), (0, 2), (3, 2)]]).class_changes
+        >>> changes["step"].tolist(), changes["class"].tolist()
+        ([0, 3, 4], ['e', 'o0', 'e'])
+        """
+        return Table(self._core.class_changes())
+
     def same_class(self, trace: int) -> list[int]:
         """The numbers of the traces whose ropes are of the same class at the end as that of this one, which is among
         them unless it has none.

@@ -51,6 +51,13 @@ def test_a_rope_has_its_class_whatever_its_history(desks: Scene) -> None:
     assert classes.to_pandas()["class"].tolist() == ["o0^-1", "o0^-1", "e"]
 
 
+def test_classes_change_up_to_those_at_the_end(desks: Scene) -> None:
+    ropes = desks.evaluate(desks.walks(200, steps=150, step=0.5))
+    changes = ropes.class_changes.to_pandas()
+    assert (changes.groupby("trace")["step"].first() == 0).all() and len(changes) > 400
+    assert changes.groupby("trace")["class"].last().tolist() == ropes.classes["class"].tolist()
+
+
 def test_what_has_no_class(desks: Scene) -> None:
     crossing = desks.evaluate([[(2, 2)], [(2, -1)]], on_violation="flag")
     assert list(crossing.classes["class"]) == [None, "e"]

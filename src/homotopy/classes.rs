@@ -10,7 +10,7 @@ use super::Class;
 use super::angle::{Direction, by_angle};
 use super::components::components;
 use crate::geometry::{TracePoint, between, left_of, orient};
-use crate::rope::{EventKind, Rope, Side, Status, TraceRecord};
+use crate::rope::{Event, EventKind, Rope, Side, Status, TraceRecord};
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 use crate::visibility::Visibility;
@@ -55,7 +55,7 @@ struct Start {
 }
 
 /// A point of a rope.
-type Node = (DVec2, Option<Side>);
+pub(super) type Node = (DVec2, Option<Side>);
 
 impl Classes {
     /// Finds the obstacles of `model` and their cuts. O(n log n + pairs of walls whose boxes meet).
@@ -118,24 +118,27 @@ impl Classes {
             return None;
         }
         let mut nodes = self.tied(std::iter::empty());
-        for event in &record.events {
-            match event.kind {
-                EventKind::Wrap => nodes.push((self.model.vertices()[event.vertex as usize], Some(event.side))),
-                EventKind::Unwrap => {
-                    assert!(nodes.len() > 1, "an unwrap follows a wrap");
-                    nodes.pop();
-                }
-            }
-        }
+        record.events.iter().for_each(|event| self.play(&mut nodes, event));
         Some(self.of_nodes(&nodes, trace.point(trace.points().len() - 1)))
     }
 
-    fn tied(&self, contacts: impl Iterator<Item = Node>) -> Vec<Node> {
+    /// Makes an event happen to a rope.
+    pub(super) fn play(&self, nodes: &mut Vec<Node>, event: &Event) {
+        match event.kind {
+            EventKind::Wrap => nodes.push((self.model.vertices()[event.vertex as usize], Some(event.side))),
+            EventKind::Unwrap => {
+                assert!(nodes.len() > 1, "an unwrap follows a wrap");
+                nodes.pop();
+            }
+        }
+    }
+
+    pub(super) fn tied(&self, contacts: impl Iterator<Item = Node>) -> Vec<Node> {
         std::iter::once((self.model.anchor(), None)).chain(contacts).collect()
     }
 
     /// The class of a rope from the anchor, the first of `nodes`, over its contacts to `end`.
-    fn of_nodes(&self, nodes: &[Node], end: TracePoint) -> Class {
+    pub(super) fn of_nodes(&self, nodes: &[Node], end: TracePoint) -> Class {
         let mut class = self.begin(nodes, end);
         for (i, &(from, side)) in nodes.iter().enumerate() {
             let next = nodes.get(i + 1);

@@ -31,9 +31,11 @@
 //! ```
 
 mod angle;
+mod changes;
 mod class;
 mod classes;
 mod components;
 
+pub use changes::ClassChange;
 pub use class::{Class, NoClass};
 pub use classes::{Classes, Cut};

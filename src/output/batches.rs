@@ -6,7 +6,7 @@ use arrow_array::RecordBatch;
 use arrow_schema::{Schema, SchemaRef};
 use rayon::prelude::*;
 
-use super::class_columns::{ClassRows, shown};
+use super::class_columns::{ChangeRows, ClassRows, shown};
 use super::columns::{EventColumns, ResultColumns};
 use super::events::row;
 use super::labels::Labels;
@@ -92,6 +92,29 @@ pub fn class_batches(
     let all = shown(classes, traces, records);
     let rows = records.iter().zip(&all);
     batches(ClassRows::default(), rows, |columns, (record, class)| columns.push(record.trace, class.as_ref()))
+}
+
+/// How the classes of ropes change as tables in memory: `trace`, `step`, and the `class` and `windings` of the rope
+/// after that step as [`class_batches`] has them, one row for the first step of a trace and one for each after which
+/// the class is another. Traces that cross walls have no rows. As [`Classes::changes`] for each, on all threads.
+///
+/// # Panics
+///
+/// As [`Classes::of_record`], if a record is not that of its trace.
+pub fn class_change_batches(
+    classes: &Classes,
+    traces: &[SettledTrace],
+    records: &[TraceRecord],
+) -> (SchemaRef, Vec<RecordBatch>) {
+    let y_down = classes.model().scene().y_down();
+    let all: Vec<_> = traces.par_iter().zip(records).map(|(trace, record)| classes.changes(trace, record)).collect();
+    let rows = records
+        .iter()
+        .zip(all)
+        .flat_map(|(record, changes)| changes.unwrap_or_default().into_iter().map(|change| (record.trace, change)));
+    batches(ChangeRows::default(), rows, |columns, (trace, change)| {
+        columns.push(trace, change.step, &change.class.shown(y_down));
+    })
 }
 
 /// The rope after every step of traces as tables in memory: the columns, and the rows in batches of whole traces, none

@@ -119,6 +119,39 @@ impl Columns for ClassRows {
     }
 }
 
+/// Classes with the numbers of their traces, and of the steps from which on they are so.
+#[derive(Default)]
+pub(super) struct ChangeRows {
+    trace: UInt64Builder,
+    step: UInt64Builder,
+    classes: ClassColumns,
+}
+
+impl ChangeRows {
+    /// Adds a change of the class, as a picture shows it, of the rope of that trace.
+    pub(super) fn push(&mut self, trace: u64, step: u64, class: &Class) {
+        self.trace.append_value(trace);
+        self.step.append_value(step);
+        self.classes.push(Some(class));
+    }
+}
+
+impl Columns for ChangeRows {
+    fn fields(&self) -> Vec<Field> {
+        let numbers = ["trace", "step"].map(|name| Field::new(name, DataType::UInt64, false));
+        numbers.into_iter().chain(self.classes.fields()).collect()
+    }
+
+    fn len(&self) -> usize {
+        self.classes.len()
+    }
+
+    fn take(&mut self) -> Vec<ArrayRef> {
+        let numbers: [ArrayRef; 2] = [Arc::new(self.trace.finish()), Arc::new(self.step.finish())];
+        numbers.into_iter().chain(self.classes.take()).collect()
+    }
+}
+
 /// The classes of ropes as a picture shows them, on all threads.
 pub(super) fn shown(classes: &Classes, traces: &[SettledTrace], records: &[TraceRecord]) -> Vec<Option<Class>> {
     let y_down = classes.model().scene().y_down();

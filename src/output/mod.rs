@@ -29,7 +29,7 @@ mod write_error;
 use std::io::Write;
 use std::path::Path;
 
-pub use batches::{class_batches, event_batches, result_batches, step_batches};
+pub use batches::{class_batches, class_change_batches, event_batches, result_batches, step_batches};
 pub use events::{EventWriter, write_events};
 pub use merge::merge_results;
 pub use passing::{abandon, commit, remove_left_files};

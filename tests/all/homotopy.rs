@@ -225,6 +225,18 @@ fn classes_are_the_same_exactly_for_the_same_ropes() {
                 let records = Reference::new(model.clone()).evaluate(&cuts, &Job::new()).unwrap();
                 let ropes = Funnel::new(model.clone()).evaluate(&cuts, &Job::new()).unwrap();
                 let classes = Classes::new(model);
+                // Of the whole trace, step by step: the same as that of the trace that ends there.
+                let whole = settle(model, &Trace { id: 0, points: points.clone() });
+                if whole.violation().is_none() {
+                    let record =
+                        Reference::new(model.clone()).evaluate(&[whole.clone()], &Job::new()).unwrap().remove(0);
+                    let changes = classes.changes(&whole, &record).unwrap();
+                    assert!(changes.windows(2).all(|two| two[0].step < two[1].step && two[0].class != two[1].class));
+                    for (cut, record) in cuts.iter().zip(&records) {
+                        let last = changes.partition_point(|change| change.step <= cut.steps() as u64) - 1;
+                        assert_eq!(Some(&changes[last].class), classes.of_record(cut, record).as_ref());
+                    }
+                }
                 let mut at = BTreeMap::<[u64; 2], Vec<(Class, usize, bool)>>::new();
                 for (i, (cut, record)) in cuts.iter().zip(&records).enumerate() {
                     let class = classes.of_record(cut, record).unwrap();
