@@ -48,6 +48,7 @@ pub mod example;
 pub mod fast;
 pub mod geometry;
 pub mod gpu;
+pub mod homotopy;
 pub mod lab;
 mod number;
 pub mod output;

@@ -9,8 +9,12 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
-use tautline::engine::{Engine, Precision, Reference};
-use tautline::output::{StepWriter, event_batches, result_batches, step_batches, write_events, write_results};
+use tautline::engine::{Engine, EngineKind, Precision, Reference};
+use tautline::homotopy::Classes;
+use tautline::output::{
+    ResultWriter, StepWriter, class_batches, class_change_batches, event_batches, result_batches, step_batches,
+    write_events, write_results,
+};
 use tautline::picture::{Drawing, Theme};
 use tautline::rope::{TraceRecord, replay};
 use tautline::scene::{Centre, Model};
@@ -71,6 +75,16 @@ impl Kept {
 
     fn steps(&self) -> Result<Table, Fault> {
         Ok(Table::of(step_batches(&self.model, self.settled()?, &self.records, &self.centres())))
+    }
+
+    /// What tells the classes of the ropes.
+    fn classes(&self) -> Result<Classes, Fault> {
+        let name = self.engine.split(' ').next().unwrap_or_default();
+        if EngineKind::named(name).is_some_and(EngineKind::counts_events) {
+            return Ok(Classes::new(&self.model));
+        }
+        let what = "takes no note of wall ends that a rope passes straight, so its ropes have no classes";
+        Err(Fault::input(format!("the engine {name} {what}; evaluate with engine=\"cpu\"")))
     }
 
     fn centres(&self) -> Vec<Centre> {
@@ -173,6 +187,20 @@ impl Ropes {
         Ok(py.detach(|| Table::of(event_batches(self.of.model.scene(), &self.of.records))))
     }
 
+    /// The class of each rope, one row a trace.
+    fn classes(&self, py: Python<'_>) -> PyResult<Table> {
+        let settled = self.settled()?;
+        let classes = |_: &Work| Ok(Table::of(class_batches(&self.of.classes()?, settled, &self.of.records)));
+        compute::run(py, classes, |_, _| Ok(()))
+    }
+
+    /// One row for each change of a rope's class.
+    fn class_changes(&self, py: Python<'_>) -> PyResult<Table> {
+        let settled = self.settled()?;
+        let changes = |_: &Work| Ok(Table::of(class_change_batches(&self.of.classes()?, settled, &self.of.records)));
+        compute::run(py, changes, |_, _| Ok(()))
+    }
+
     /// One row for the rope after every step.
     fn steps(&self, py: Python<'_>) -> PyResult<Table> {
         if let Some(table) = self.steps.get() {
@@ -250,18 +278,27 @@ impl Ropes {
         Ok((PyArray1::from_vec(py, offsets), pairs(py, flat)?))
     }
 
-    /// Writes results and events as the program does.
+    /// Writes results, with classes if they are asked for, and events as the program does.
     fn write(
         &self,
         py: Python<'_>,
         results: Option<PathBuf>,
         events: Option<PathBuf>,
         steps: Option<PathBuf>,
+        classes: bool,
     ) -> PyResult<()> {
         let settled = self.settled()?;
         let scene = self.of.model.scene();
         let write = |_: &Work| {
-            results.iter().try_for_each(|path| write_results(path, scene, &self.of.records))?;
+            results.iter().try_for_each(|path| {
+                if !classes {
+                    return Ok::<_, Fault>(write_results(path, scene, &self.of.records)?);
+                }
+                let classes = self.of.classes()?;
+                let mut file = ResultWriter::create_with_classes(path, scene)?;
+                file.write_classes(&classes, settled, &self.of.records)?;
+                Ok(file.finish()?)
+            })?;
             events.iter().try_for_each(|path| write_events(path, scene, &self.of.records))?;
             steps.iter().try_for_each(|path| {
                 let mut file = StepWriter::create(path, &self.of.model, &self.of.centres())?;

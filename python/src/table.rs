@@ -113,7 +113,8 @@ impl Table {
     }
 
     /// The columns as arrays. Numbers are one array, texts codes and the list of texts, points an array of shape (n, 2)
-    /// with NaN for a missing one, and lists their offsets and the column of all their values.
+    /// with NaN for a missing one, windings one of whole numbers of that shape, and lists their offsets and the column of
+    /// all their values.
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
         for (number, field) in self.schema.fields().iter().enumerate() {
@@ -139,6 +140,7 @@ fn column<'py>(py: Python<'py>, kind: &DataType, arrays: &[ArrayRef]) -> PyResul
         DataType::Int64 => Ok(numbers::<Int64Type>(py, arrays)),
         DataType::Float64 => Ok(floats(py, arrays)),
         DataType::Utf8 => texts(py, arrays),
+        DataType::Struct(of) if *of[0].data_type() == DataType::UInt32 => windings(py, arrays),
         DataType::Struct(_) => points(py, arrays),
         DataType::List(of) => {
             let mut offsets = vec![0i64];
@@ -200,6 +202,18 @@ fn points<'py>(py: Python<'py>, arrays: &[ArrayRef]) -> PyResult<Bound<'py, PyAn
             let there = points.is_valid(row);
             flat.extend([x, y].map(|c| if there { c.value(row) } else { f64::NAN }));
         }
+    }
+    pairs(py, flat)
+}
+
+/// Obstacles, each with how often a rope winds about it.
+fn windings<'py>(py: Python<'py>, arrays: &[ArrayRef]) -> PyResult<Bound<'py, PyAny>> {
+    let mut flat: Vec<i64> = Vec::new();
+    for array in arrays {
+        let windings = array.as_struct();
+        let obstacles = windings.column(0).as_primitive::<UInt32Type>().values();
+        let turns = windings.column(1).as_primitive::<Int64Type>().values();
+        flat.extend(obstacles.iter().zip(turns).flat_map(|(&obstacle, &turns)| [i64::from(obstacle), turns]));
     }
     pairs(py, flat)
 }

@@ -221,6 +221,26 @@ class Answer:
         }
         return frame(rows, ["anchor", "name", "share"])
 
+    @property
+    def classes(self) -> Any:
+        """The most common homotopy classes of ropes at the end, the most common first: a DataFrame of pandas by the
+        class's word, as `Ropes.classes` has it, and the anchor's ``x`` and ``y``; only of studies with ``tallies =
+        {"classes": 10}`` or so. ``share`` is that of all traces, ``count`` is how many ended with it; at most
+        ``at_most``, since classes that are rare in a block are not all counted.
+        """
+        found = self.summary.get("classes")
+        if found is None:
+            raise StudyError('the study counts no classes; give it tallies={"classes": 10}')
+        rows = {
+            (c["class"], *c["anchor"]): {
+                "count": c["count"],
+                "at_most": c["at_most"],
+                **{f"share{end}": c["share"][key] for end, key in (("", "value"), ("_low", "low"), ("_high", "high"))},
+            }
+            for c in found["classes"]
+        }
+        return frame(rows, ["class", "x", "y"])
+
     def _anchors(self) -> list[dict[str, Any]]:
         found: list[dict[str, Any]] | None = self.summary.get("anchors")
         if found is None:

@@ -75,6 +75,54 @@ class Ropes:
         return Table(self._core.events())
 
     @cached_property
+    def classes(self) -> Table:
+        """The homotopy class of each rope at the end, one row a trace: ``trace``, ``class`` and ``windings``.
+
+        Two ropes between the same ends have the same ``class`` exactly if one can be moved into the other without
+        crossing a wall, whatever their histories. It is a word: ``o12`` where the rope passes over the cut of obstacle
+        12, the ray straight up from its highest wall end, counter-clockwise, ``o12^-1`` where it passes clockwise, in
+        the order from the anchor; ``e`` if it passes none. ``windings`` are arrays of shape (n, 2): obstacles,
+        and how often the rope winds about each, those with 0 left out. A trace that crosses a wall has None and none.
+
+        >>> import tautrope
+        >>> scene = tautrope.Scene([[[-1, 0], [1, 0]]], anchor=(0, -1))
+        >>> ropes = scene.evaluate([[(3, -1), (3, 1), (0, 1)], [(-3, -1), (-3, 1), (0, 1)]])
+        >>> ropes.classes["class"].tolist()
+        ['o0', 'e']
+        """
+        return Table(self._core.classes())
+
+    @cached_property
+    def class_changes(self) -> Table:
+        """How the class of each rope changes: ``trace``, ``step``, and the ``class`` and ``windings`` after that step as
+        `classes` has them. One row for the first step of a trace, and one for each step after which the class is another.
+        Traces that cross walls have none.
+
+        >>> import tautrope
+        >>> scene = tautrope.Scene([[[-1, 0], [1, 0]]], anchor=(0, -1))
+        >>> changes = scene.evaluate([[(0, -2), (3, 0), (3, 2), (0, 2), (3, 2)]]).class_changes
+        >>> changes["step"].tolist(), changes["class"].tolist()
+        ([0, 3, 4], ['e', 'o0', 'e'])
+        """
+        return Table(self._core.class_changes())
+
+    def same_class(self, trace: int) -> list[int]:
+        """The numbers of the traces whose ropes are of the same class at the end as that of this one, which is among
+        them unless it has none.
+
+        >>> import tautrope
+        >>> scene = tautrope.Scene([[[-1, 0], [1, 0]]], anchor=(0, -1))
+        >>> east, west = [(3, -1), (3, 1), (0, 1)], [(-3, -1), (-3, 1), (0, 1)]
+        >>> ropes = scene.evaluate([east, west, [*east, (-1, 2)]])
+        >>> ropes.same_class(0)
+        [0, 2]
+        """
+        classes = self.classes["class"]
+        wanted = classes[self._place(trace)]
+        same: Any = [] if wanted is None else np.flatnonzero(classes == wanted)
+        return [int(self["trace"][place]) for place in same]
+
+    @cached_property
     def steps(self) -> Table:
         """One row for the rope after every step, in order: ``trace``, ``step``, where the free end is (``x``, ``y``),
         the rope's ``length``, its ``contacts`` and ``turns``, its ``pull_x`` and ``pull_y`` (null for a rope of no
@@ -194,14 +242,19 @@ class Ropes:
         results: str | os.PathLike[str] | None = None,
         events: str | os.PathLike[str] | None = None,
         steps: str | os.PathLike[str] | None = None,
+        *,
+        classes: bool = False,
     ) -> None:
         """Writes one row a trace to ``results``, one row an event to ``events`` and one row a step to ``steps``:
         ``.parquet``, ``.csv`` or ``.jsonl``.
 
-        The files are those of ``tautline eval --out --events --steps``, to the byte. Steps are written as they are
+        With ``classes`` the results have the columns ``class`` and ``windings`` of `classes` too.
+
+        The files are those of ``tautline eval --out --events --steps``, and ``--class``, to the byte. Steps are written as they are
         made, in bounded memory.
         """
-        self._core.write(*(None if path is None else Path(path) for path in (results, events, steps)))
+        paths = [None if path is None else Path(path) for path in (results, events, steps)]
+        self._core.write(paths[0], paths[1], paths[2], classes)
 
     def svg(self, *traces: int, step: int | None = None, dark: bool | None = None) -> Picture:
         """The picture of up to six traces and their ropes as SVG, after a step or at the end.

@@ -16,6 +16,7 @@ use super::ends::EndsArgs;
 use super::failure::Failure;
 use super::input::{InputArgs, tie};
 use super::look::{Look, Target, write};
+use super::of_class::ClassArgs;
 use super::paths::keep_apart;
 use super::print;
 
@@ -29,6 +30,8 @@ pub(crate) struct Args {
     /// The picture: .svg, .png, or .html for a page that plays the trace
     #[arg(id = "picture", long = "out", value_name = "FILE", required_unless_present = "gallery")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    class: ClassArgs,
     #[command(flatten)]
     ends: EndsArgs,
     #[command(flatten)]
@@ -56,6 +59,9 @@ fn draw(args: &Args, target: &Target) -> Result<(), Failure> {
         if let Some(id) = args.wanted.first() {
             return Err(Failure::input(anyhow!("--trace {id} needs --traces: a .csv or .parquet of points")));
         }
+        if let Some(option) = args.class.given() {
+            return Err(Failure::input(anyhow!("{option} needs --traces: a .csv or .parquet of points")));
+        }
         // A scene is looked at to find a place for the anchor, too.
         let scene = args.input.walls()?;
         return match args.input.anchor.or(scene.anchor()) {
@@ -71,6 +77,10 @@ fn draw(args: &Args, target: &Target) -> Result<(), Failure> {
         return draw_ends(args, traces, target);
     }
     let model = Arc::new(args.input.model()?);
+    let of_class = args.class.traces(&model, || args.input.source(), |error| not_found(args, error))?;
+    if let Some((settled, records)) = of_class {
+        return write(target, &drawing(&model, &settled, &records), &args.look);
+    }
     let settled = traces(args, source?, &model)?;
     args.input.violations().take(&settled)?;
     let records = Cpu::new(model.clone()).evaluate(&settled, &Job::new())?;
@@ -85,6 +95,9 @@ fn drawing<'a>(model: &'a Model, settled: &[SettledTrace], records: &'a [TraceRe
 /// Draws ropes whose ends both move.
 fn draw_ends(args: &Args, traces: TraceReader, target: &Target) -> Result<(), Failure> {
     args.ends.refuse_anchor(&args.input)?;
+    if let Some(option) = args.class.given() {
+        return Err(Failure::input(anyhow!("{option} is for ropes that are tied, and here the anchor moves")));
+    }
     if args.look.animate {
         return Err(Failure::input(anyhow!(
             "--animate is for ropes that are tied, and here the anchor moves: leave it out, and give --step K for the \

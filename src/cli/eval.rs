@@ -1,10 +1,14 @@
 //! `tautline eval`.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
-use tautline::engine::{Engine, Job, Precision};
+use anyhow::anyhow;
+use tautline::engine::{Engine, EngineKind, Job, Precision};
+use tautline::homotopy::Classes;
 use tautline::output::check_output;
+use tautline::scene::Model;
 use tautline::stream::{Account, Batches, EndsFiles, Files, Source, Stage, evaluate};
 use tautline::trade::Terms;
 
@@ -28,7 +32,7 @@ pub(crate) struct Args {
         long, value_name = "FILE", requires = "scene",
         conflicts_with_all = [
             "traces", "anchor", "events", "steps", "engine", "adapter", "precision", "stride", "simplify",
-            "on_violation", "anchor_trace",
+            "on_violation", "anchor_trace", "class",
         ]
     )]
     queries: Option<PathBuf>,
@@ -38,6 +42,10 @@ pub(crate) struct Args {
     /// Where to write every wrap and unwrap: .jsonl, .csv or .parquet
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
+    /// Also write the class of each rope: which way it lies among the obstacles, as a word, and how often it winds
+    /// about each of them
+    #[arg(long, requires = "out")]
+    class: bool,
     #[command(flatten)]
     ends: EndsArgs,
     #[command(flatten)]
@@ -63,6 +71,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         && args.ends.move_in(given)?
         && let Ok(Source::File(traces)) = source
     {
+        if args.class {
+            let what = "--class is for ropes that are tied, and here the anchor moves: leave it out";
+            return Err(Failure::input(anyhow!(what)));
+        }
         return ends::run(&args.of_ends(), traces);
     }
     let terms = args.trade.terms(&args.input.name(), args.input.model()?)?;
@@ -79,6 +91,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Some(path) => files.with_steps(path, args.every.centres(model.scene())?),
         None => files,
     };
+    let files = if args.class { files.with_classes(classes(&*engine, model)?) } else { files };
     let mut violations = args.input.violations();
     let (job, progress, policy) = (Job::new(), Progress::new(batches.size()), violations.policy());
     let watch = |stage: Stage<'_>| match stage {
@@ -102,6 +115,16 @@ impl Args {
         let Args { input, ends, engine, every, json, .. } = self;
         Given { input, ends, engine, every, files, others, json: *json }
     }
+}
+
+/// What tells the classes of ropes that `engine` evaluates.
+fn classes(engine: &dyn Engine, model: &Arc<Model>) -> Result<Classes, Failure> {
+    if EngineKind::named(engine.name()).is_some_and(EngineKind::counts_events) {
+        return Ok(Classes::new(model));
+    }
+    let name = engine.name();
+    let what = "takes no note of wall ends that a rope passes straight, and so not of the side on which they lie";
+    Err(Failure::input(anyhow!("--class: the engine {name} {what}; give --engine cpu, or leave --engine out")))
 }
 
 /// What results say of themselves: nothing if they are exact.

@@ -4,6 +4,7 @@ pub(super) const EVAL: &str = "Examples:
   tautline eval                                              the built-in example
   tautline eval --scene plan.geojson --traces drags.csv --out ropes.parquet
   tautline eval --scene plan.geojson --traces drags.csv --events events.jsonl --json
+  tautline eval --scene plan.geojson --traces drags.csv --class --out ropes.csv         which way ropes lie
   tautline eval --scene arena.map --anchor 20.5,10.5 --traces drags.csv --engine gpu
   tautline eval --scene coast.geojson --traces drags.csv --stride 4 --simplify 0.5      faster, nearly right";
 
@@ -18,6 +19,7 @@ pub(super) const DRAW: &str = "Examples:
   tautline draw --scene plan.geojson --traces drags.csv --trace 4 --step 37 --out rope.png
   tautline draw --scene plan.geojson --traces drags.csv --trace 4 --out rope.html
   tautline draw --scene plan.geojson --traces drags.csv --frames 1-12 --out events.svg
+  tautline draw --scene plan.geojson --traces drags.csv --same-class 4 --out same.svg
   tautline draw --scene plan.geojson --out plan.svg
   tautline draw --gallery gallery";
 

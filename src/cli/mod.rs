@@ -19,6 +19,7 @@ mod interrupt;
 mod look;
 mod manual;
 mod measured;
+mod of_class;
 mod parse;
 mod paths;
 mod progress;

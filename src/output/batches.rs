@@ -6,11 +6,13 @@ use arrow_array::RecordBatch;
 use arrow_schema::{Schema, SchemaRef};
 use rayon::prelude::*;
 
+use super::class_columns::{ChangeRows, ClassRows, shown};
 use super::columns::{EventColumns, ResultColumns};
 use super::events::row;
 use super::labels::Labels;
 use super::step_arrays::StepArrays;
 use super::tables::Columns;
+use crate::homotopy::Classes;
 use crate::rope::{StepColumns, Steps, TraceRecord};
 use crate::scene::{Centre, Model, Scene};
 use crate::trace::SettledTrace;
@@ -40,7 +42,9 @@ const STEPS: usize = 1 << 16;
 /// ```
 pub fn result_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec<RecordBatch>) {
     let (y_down, labels) = (scene.y_down(), &Labels::of(scene));
-    batches(ResultColumns::new(labels), records.iter(), |columns, record| columns.push(y_down, record, labels))
+    batches(ResultColumns::new(labels, false), records.iter(), |columns, record| {
+        columns.push(y_down, record, labels, None)
+    })
 }
 
 /// Events as tables in memory, one row an event: the columns, and the rows in batches, none if there are no events.
@@ -54,6 +58,62 @@ pub fn event_batches(scene: &Scene, records: &[TraceRecord]) -> (SchemaRef, Vec<
     let events = records.iter().flat_map(|record| record.events.iter().map(|event| (record.trace, event)));
     batches(EventColumns::new(labels, false), events, |columns, (trace, event)| {
         columns.push(&row(scene, labels, trace, event))
+    })
+}
+
+/// The classes of ropes as tables in memory, one row a trace: `trace`, `class` and `windings`, a list of structs of
+/// `obstacle` and `turns`; both null where the trace crosses a wall. They are as a picture shows them. O(events), and
+/// as [`Classes::of`] for each, on all threads.
+///
+/// # Panics
+///
+/// As [`Classes::of_record`], if a record is not that of its trace.
+///
+/// ```
+/// use std::sync::Arc;
+/// use tautline::engine::{Cpu, Engine, Job};
+/// use tautline::example::{Walker, floor_plan, settled_walks};
+/// use tautline::homotopy::Classes;
+/// use tautline::output::class_batches;
+/// use tautline::scene::Model;
+///
+/// let model = Arc::new(Model::new(floor_plan(), None)?);
+/// let walks = settled_walks(&model, Walker { step: 0.3, steps: 50, seed: 1 }, 3);
+/// let records = Cpu::new(model.clone()).evaluate(&walks, &Job::new())?;
+/// let (schema, batches) = class_batches(&Classes::new(&model), &walks, &records);
+/// assert_eq!((schema.field(1).name().as_str(), batches[0].num_rows()), ("class", 3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn class_batches(
+    classes: &Classes,
+    traces: &[SettledTrace],
+    records: &[TraceRecord],
+) -> (SchemaRef, Vec<RecordBatch>) {
+    let all = shown(classes, traces, records);
+    let rows = records.iter().zip(&all);
+    batches(ClassRows::default(), rows, |columns, (record, class)| columns.push(record.trace, class.as_ref()))
+}
+
+/// How the classes of ropes change as tables in memory: `trace`, `step`, and the `class` and `windings` of the rope
+/// after that step as [`class_batches`] has them, one row for the first step of a trace and one for each after which
+/// the class is another. Traces that cross walls have no rows. As [`Classes::changes`] for each, on all threads.
+///
+/// # Panics
+///
+/// As [`Classes::of_record`], if a record is not that of its trace.
+pub fn class_change_batches(
+    classes: &Classes,
+    traces: &[SettledTrace],
+    records: &[TraceRecord],
+) -> (SchemaRef, Vec<RecordBatch>) {
+    let y_down = classes.model().scene().y_down();
+    let all: Vec<_> = traces.par_iter().zip(records).map(|(trace, record)| classes.changes(trace, record)).collect();
+    let rows = records
+        .iter()
+        .zip(all)
+        .flat_map(|(record, changes)| changes.unwrap_or_default().into_iter().map(|change| (record.trace, change)));
+    batches(ChangeRows::default(), rows, |columns, (trace, change)| {
+        columns.push(trace, change.step, &change.class.shown(y_down));
     })
 }
 

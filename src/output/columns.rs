@@ -9,9 +9,11 @@ use arrow_array::builder::{
 use arrow_schema::{DataType, Field, Fields};
 use glam::DVec2;
 
+use super::class_columns::ClassColumns;
 use super::labels::Labels;
 use super::tables::Columns;
 use super::text::Row;
+use crate::homotopy::Class;
 use crate::rope::{Event, TraceRecord};
 use crate::trace::End;
 
@@ -57,11 +59,13 @@ pub(super) struct ResultColumns {
     pull: StructBuilder,
     /// Where wall ends have labels.
     labels: Option<ListBuilder<StringBuilder>>,
+    /// Where classes are told.
+    classes: Option<ClassColumns>,
 }
 
 impl ResultColumns {
-    /// With room for labels, if there are some.
-    pub(super) fn new(labels: &Labels) -> Self {
+    /// With room for labels, if there are some, and for classes, if they are told.
+    pub(super) fn new(labels: &Labels, with_classes: bool) -> Self {
         let list = || ListBuilder::new(StringBuilder::new()).with_field(label_element());
         ResultColumns {
             trace: UInt64Builder::new(),
@@ -76,11 +80,12 @@ impl ResultColumns {
             sides: ListBuilder::new(StringBuilder::new()).with_field(element(DataType::Utf8)),
             pull: point_builder(),
             labels: (!labels.is_empty()).then(list),
+            classes: with_classes.then(ClassColumns::default),
         }
     }
 
-    /// Adds a row; sides are those that a picture shows.
-    pub(super) fn push(&mut self, y_down: bool, r: &TraceRecord, labels: &Labels) {
+    /// Adds a row; sides and the class, which may be left out where none are told, are those that a picture shows.
+    pub(super) fn push(&mut self, y_down: bool, r: &TraceRecord, labels: &Labels, class: Option<&Class>) {
         self.trace.append_value(r.trace);
         self.status.append_value(r.status.name());
         self.steps.append_value(r.steps);
@@ -99,6 +104,9 @@ impl ResultColumns {
         if let Some(column) = &mut self.labels {
             r.wraps.iter().for_each(|(at, _)| column.values().append_option(labels.at(*at)));
             column.append(true);
+        }
+        if let Some(columns) = &mut self.classes {
+            columns.push(class);
         }
     }
 }
@@ -120,7 +128,8 @@ impl Columns for ResultColumns {
             Field::new("sides", DataType::List(Arc::new(element(DataType::Utf8))), false),
             Field::new("pull", DataType::Struct(point_fields()), true),
         ];
-        fields.into_iter().chain(labels).collect()
+        let classes = self.classes.iter().flat_map(ClassColumns::fields);
+        fields.into_iter().chain(labels).chain(classes).collect()
     }
 
     fn len(&self) -> usize {
@@ -129,6 +138,7 @@ impl Columns for ResultColumns {
 
     fn take(&mut self) -> Vec<ArrayRef> {
         let labels = self.labels.as_mut().map(|labels| Arc::new(labels.finish()) as ArrayRef);
+        let classes: Vec<ArrayRef> = self.classes.iter_mut().flat_map(ClassColumns::take).collect();
         let columns: Vec<ArrayRef> = vec![
             Arc::new(self.trace.finish()),
             Arc::new(self.status.finish()),
@@ -142,7 +152,7 @@ impl Columns for ResultColumns {
             Arc::new(self.sides.finish()),
             Arc::new(self.pull.finish()),
         ];
-        columns.into_iter().chain(labels).collect()
+        columns.into_iter().chain(labels).chain(classes).collect()
     }
 }
 

@@ -39,7 +39,7 @@ pub fn merge_results(
     rows: u64,
     is_cut: bool,
 ) -> Result<(), WriteError> {
-    let columns = ResultColumns::new(&Labels::of(scene));
+    let columns = ResultColumns::new(&Labels::of(scene), false);
     let mut table = Table::new(to, WholeFile::create(to)?, columns)?;
     notes.iter().for_each(|(key, value)| table.note(key, value));
     // Files are opened when it is their turn, so that there may be more of them than can be open at a time.

@@ -2,9 +2,11 @@
 //!
 //! One row a trace ([`ResultWriter`]) or one row an event ([`EventWriter`]), in the format that the extension names:
 //! `.jsonl`, `.csv` or `.parquet`. All formats hold the same values and give back the same f64. The bytes depend on the
-//! records alone. [`result_batches`], [`event_batches`] and [`step_batches`] have the same rows in memory.
+//! records alone. [`result_batches`], [`event_batches`], [`step_batches`] and [`class_batches`] have the same rows in
+//! memory.
 
 mod batches;
+mod class_columns;
 mod columns;
 mod events;
 mod labels;
@@ -27,7 +29,7 @@ mod write_error;
 use std::io::Write;
 use std::path::Path;
 
-pub use batches::{event_batches, result_batches, step_batches};
+pub use batches::{class_batches, class_change_batches, event_batches, result_batches, step_batches};
 pub use events::{EventWriter, write_events};
 pub use merge::merge_results;
 pub use passing::{abandon, commit, remove_left_files};

@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
+use super::class_columns::{NAMES, shown};
 use super::columns::ResultColumns;
 use super::labels::Labels;
 use super::rows::Rows;
 use super::{CHUNK, WholeFile, WriteError, text};
+use crate::homotopy::{Class, Classes};
 use crate::rope::TraceRecord;
 use crate::scene::Scene;
+use crate::trace::SettledTrace;
 
 /// Writes results one by one to a file that appears when it is finished.
 ///
@@ -36,12 +39,29 @@ impl ResultWriter {
     ///
     /// Those of [`check_output`](super::check_output).
     pub fn create(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
+        Self::with(path, scene, false)
+    }
+
+    /// The same with two more columns at the end, to which [`write_classes`](Self::write_classes) adds rows: `class`,
+    /// the rope's [`Class`] as text, and `windings`, how often it winds about each obstacle, where that is not 0. In
+    /// `.jsonl` these are objects of `obstacle` and `turns`, in `.csv` they look like `4 1;17 -2`, in `.parquet` they
+    /// are a list of structs. Both are null, in `.csv` empty, where the trace crosses a wall, and as a picture shows
+    /// them.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`check_output`](super::check_output).
+    pub fn create_with_classes(path: &Path, scene: &Scene) -> Result<Self, WriteError> {
+        Self::with(path, scene, true)
+    }
+
+    fn with(path: &Path, scene: &Scene, with_classes: bool) -> Result<Self, WriteError> {
         let labels = Labels::of(scene);
-        let header = match labels.is_empty() {
-            true => text::RESULT_HEADER.to_owned(),
-            false => format!("{},labels", text::RESULT_HEADER),
-        };
-        Ok(ResultWriter { rows: Rows::create(path, &header, ResultColumns::new(&labels))?, labels })
+        let more = (!labels.is_empty()).then_some("labels").into_iter();
+        let more = more.chain(NAMES.into_iter().filter(|_| with_classes));
+        let header = more.fold(text::RESULT_HEADER.to_owned(), |header, name| format!("{header},{name}"));
+        let columns = ResultColumns::new(&labels, with_classes);
+        Ok(ResultWriter { rows: Rows::create(path, &header, columns)?, labels })
     }
 
     /// Adds one result in that scene.
@@ -62,10 +82,40 @@ impl ResultWriter {
         let (y_down, labels) = (scene.y_down(), &self.labels);
         self.rows.write_all(
             records,
-            |text, record| text::result_json(text, y_down, record, labels),
-            |text, record| text::result_csv(text, y_down, record, labels),
+            |text, record| text::result_json(text, y_down, record, labels, None),
+            |text, record| text::result_csv(text, y_down, record, labels, None),
             |table, record| {
-                table.columns.push(y_down, record, labels);
+                table.columns.push(y_down, record, labels, None);
+                table.flush_if_full()
+            },
+        )
+    }
+
+    /// Adds results to a file [with classes](Self::create_with_classes), each with its trace, in the scene of the
+    /// model of `classes`. O(events), and as [`Classes::of`] for each, on all threads.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`write`](Self::write).
+    ///
+    /// # Panics
+    ///
+    /// As [`Classes::of_record`], if a record is not that of its trace.
+    pub fn write_classes(
+        &mut self,
+        classes: &Classes,
+        traces: &[SettledTrace],
+        records: &[TraceRecord],
+    ) -> Result<(), WriteError> {
+        let (y_down, labels) = (classes.model().scene().y_down(), &self.labels);
+        let all = shown(classes, traces, records);
+        let rows: Vec<(&TraceRecord, Option<&Class>)> = records.iter().zip(all.iter().map(Option::as_ref)).collect();
+        self.rows.write_all(
+            &rows,
+            |text, &(record, class)| text::result_json(text, y_down, record, labels, Some(class)),
+            |text, &(record, class)| text::result_csv(text, y_down, record, labels, Some(class)),
+            |table, &(record, class)| {
+                table.columns.push(y_down, record, labels, class);
                 table.flush_if_full()
             },
         )

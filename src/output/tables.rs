@@ -261,7 +261,8 @@ mod tests {
         let onto_full = || WholeFile::onto(&path, File::options().write(true).open("/dev/full").unwrap());
         let expected = format!("cannot write {}: No space left on device (os error 28)", path.display());
 
-        let few = Table::new(&path, onto_full(), ResultColumns::new(&Labels::of(&Scene::new([]).unwrap()))).unwrap();
+        let few =
+            Table::new(&path, onto_full(), ResultColumns::new(&Labels::of(&Scene::new([]).unwrap()), false)).unwrap();
         assert_eq!(few.complete().unwrap_err().to_string(), expected);
 
         let mut many = Table::new(&path, onto_full(), EventColumns::default()).unwrap();

@@ -8,7 +8,9 @@ use std::io::{self, Write};
 use glam::DVec2;
 use serde::{Serialize, Serializer};
 
+use super::class_columns::{self, Winding};
 use super::labels::{Labels, field};
+use crate::homotopy::Class;
 use crate::rope::{Event, Side, TraceRecord};
 use crate::trace::End;
 
@@ -34,7 +36,15 @@ struct ResultLine<'a> {
     pull: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     labels: Option<Vec<Option<&'a str>>>,
+    /// Left out where classes are not told, null for a rope without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    class: Option<Option<String>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    windings: Option<Option<Vec<Winding>>>,
 }
+
+/// The class of a rope, as a picture shows it, where classes are told; none if it has none.
+pub(super) type Told<'a> = Option<Option<&'a Class>>;
 
 /// What the wall ends are called at which the rope turns, where any have names.
 fn names<'a>(r: &TraceRecord, labels: &'a Labels) -> Option<Vec<Option<&'a str>>> {
@@ -81,7 +91,13 @@ struct EventLine<'a> {
     label: Option<Option<&'a str>>,
 }
 
-pub(super) fn result_json(out: &mut impl Write, y_down: bool, r: &TraceRecord, labels: &Labels) -> io::Result<()> {
+pub(super) fn result_json(
+    out: &mut impl Write,
+    y_down: bool,
+    r: &TraceRecord,
+    labels: &Labels,
+    told: Told<'_>,
+) -> io::Result<()> {
     let line = ResultLine {
         trace: r.trace,
         status: r.status.name(),
@@ -95,12 +111,20 @@ pub(super) fn result_json(out: &mut impl Write, y_down: bool, r: &TraceRecord, l
         sides: Sides { wraps: &r.wraps, y_down },
         pull: r.pull.map(|p| p.to_array()),
         labels: names(r, labels),
+        class: told.map(|class| class.map(Class::to_string)),
+        windings: told.map(|class| class.map(class_columns::windings)),
     };
     serde_json::to_writer(&mut *out, &line)?;
     out.write_all(b"\n")
 }
 
-pub(super) fn result_csv(out: &mut impl Write, y_down: bool, r: &TraceRecord, labels: &Labels) -> io::Result<()> {
+pub(super) fn result_csv(
+    out: &mut impl Write,
+    y_down: bool,
+    r: &TraceRecord,
+    labels: &Labels,
+    told: Told<'_>,
+) -> io::Result<()> {
     write!(out, "{},{},{},", r.trace, r.status.name(), r.steps)?;
     number(out, r.length)?;
     out.write_all(b",")?;
@@ -129,6 +153,9 @@ pub(super) fn result_csv(out: &mut impl Write, y_down: bool, r: &TraceRecord, la
         out.write_all(b",")?;
         // A label may hold whatever a list of them could be parted by.
         field(out, &serde_json::to_string(&names)?)?;
+    }
+    if let Some(class) = told {
+        class_columns::csv(out, class)?;
     }
     out.write_all(b"\n")
 }

@@ -51,6 +51,9 @@ pub fn page(summary: &Summary, scene: &Scene, pictures: &[(String, String)], run
         section("Contacts by obstacle", true, tables::by_obstacle(counted));
     }
     section("Commonest ropes at the end", !summary.ropes.is_empty(), tables::ropes(summary));
+    if let Some(found) = &summary.classes {
+        section("Commonest homotopy classes at the end", true, tables::classes(found));
+    }
     section("Wall ends with the longest contacts", !summary.contacts.is_empty(), tables::contacts(summary));
     let plan = serde_json::to_value(&summary.study).unwrap_or_default();
     section("Parameters", true, tables::values(&plan));

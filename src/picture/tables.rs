@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::label::{count, number, percent};
 use super::svg::escape;
-use crate::study::{ByObstacle, Estimate, Scalar, Summary, quantity};
+use crate::study::{ByObstacle, ClassAnswer, Estimate, Scalar, Summary, quantity};
 
 /// How many rows the tables of obstacles and of wall ends have at the most.
 const ROWS: usize = 20;
@@ -120,6 +120,23 @@ pub(super) fn ropes(summary: &Summary) -> String {
         vec![(i + 1).to_string(), percent(&r.share), counted, point(r.anchor), way]
     });
     table("words", &["", "share", "traces", "anchor", "turns at"], rows)
+}
+
+/// The commonest classes, and what their letters stand for.
+pub(super) fn classes(found: &ClassAnswer) -> String {
+    let rows = found.classes.iter().enumerate().map(|(i, c)| {
+        let counted =
+            if c.at_most > c.count { format!("{} to {}", count(c.count), count(c.at_most)) } else { count(c.count) };
+        vec![(i + 1).to_string(), percent(&c.share), counted, point(c.anchor), c.class.clone()]
+    });
+    let letters = found
+        .obstacles
+        .iter()
+        .map(|letter| vec![format!("o{}", letter.obstacle), place(letter.label.as_deref(), letter.at)]);
+    let least = if found.is_complete { "" } else { "at least " };
+    format!("<p class=\"note\">There are {least}{} different classes.</p>\n", count(found.distinct))
+        + &table("words", &["", "share", "traces", "anchor", "class"], rows)
+        + &table("words", &["letter", "its obstacle’s cut starts at"], letters)
 }
 
 /// The wall ends that ropes touch the longest.

@@ -29,7 +29,7 @@ pub enum Source {
 
 impl Source {
     /// The next traces, drawn in `model` if they are not in a file.
-    fn next(&mut self, model: &Model, traces: usize) -> Result<Option<Vec<Trace>>, StreamError> {
+    pub(super) fn next(&mut self, model: &Model, traces: usize) -> Result<Option<Vec<Trace>>, StreamError> {
         let points = (512 * traces).clamp(*POINTS.start(), *POINTS.end());
         match self {
             Source::File(reader) => Ok(reader.next_batch(traces, points)?),

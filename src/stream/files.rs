@@ -8,6 +8,7 @@ use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
 use super::StreamError;
+use crate::homotopy::Classes;
 use crate::output::{EventWriter, ResultWriter, StepWriter, WholeFile, WriteError, commit};
 use crate::rope::TraceRecord;
 use crate::scene::{Centre, Model};
@@ -30,6 +31,8 @@ struct Wanted {
     events: Option<PathBuf>,
     /// And about what turns are counted.
     steps: Option<(PathBuf, Vec<Centre>)>,
+    /// What tells the classes of the results, if they have them.
+    classes: Option<Arc<Classes>>,
     model: Arc<Model>,
     /// What is noted in Parquet files.
     notes: Vec<(&'static str, String)>,
@@ -57,7 +60,7 @@ impl Files {
         notes: Vec<(&'static str, String)>,
     ) -> Self {
         let [out, events] = [out, events].map(|path| path.map(Path::to_owned));
-        Files { wanted: Wanted { out, events, steps: None, model: model.clone(), notes }, running: None }
+        Files { wanted: Wanted { out, events, steps: None, classes: None, model: model.clone(), notes }, running: None }
     }
 
     /// The same with the rope after every step in the file at `steps`, and turns counted about each of `centres`: see
@@ -68,8 +71,18 @@ impl Files {
         self
     }
 
+    /// The same with the class of each rope in the results: see
+    /// [`ResultWriter::create_with_classes`]. Records must be those of an engine that promises the events of the
+    /// reference.
+    #[must_use]
+    pub fn with_classes(mut self, classes: Classes) -> Self {
+        self.wanted.classes = Some(Arc::new(classes));
+        self
+    }
+
     /// Takes the next records, and waits while those before are being written. Their traces, in the same order, are
-    /// needed where [every step](Self::with_steps) is to be written, and may be left out elsewhere.
+    /// needed where [every step](Self::with_steps) or [classes](Self::with_classes) are to be written, and may be left
+    /// out elsewhere.
     ///
     /// # Errors
     ///
@@ -79,7 +92,7 @@ impl Files {
             return Ok(());
         }
         // Memory is for those who ask.
-        let traces = if self.wanted.steps.is_some() { traces } else { Vec::new() };
+        let traces = if self.wanted.needs_traces() { traces } else { Vec::new() };
         let running = self.run();
         let sent = running.sender.as_ref().map(|sender| sender.send((traces, records)));
         // The thread ends early for a reason, which it tells.
@@ -136,11 +149,17 @@ impl Wanted {
         self.out.is_some() || self.events.is_some() || self.steps.is_some()
     }
 
+    fn needs_traces(&self) -> bool {
+        self.steps.is_some() || (self.classes.is_some() && self.out.is_some())
+    }
+
     /// Writes all that comes.
     fn write(&self, evaluated: &Receiver<Evaluated>) -> Result<Written, WriteError> {
         let mut took = Duration::ZERO;
         let scene = self.model.scene();
-        let mut out = self.out.as_deref().map(|path| ResultWriter::create(path, scene)).transpose()?;
+        let classes = self.classes.as_deref();
+        let create = if classes.is_some() { ResultWriter::create_with_classes } else { ResultWriter::create };
+        let mut out = self.out.as_deref().map(|path| create(path, scene)).transpose()?;
         let mut events = self.events.as_deref().map(|path| EventWriter::create(path, scene)).transpose()?;
         let steps = self.steps.as_ref().map(|(path, centres)| StepWriter::create(path, &self.model, centres));
         let mut steps = steps.transpose()?;
@@ -153,9 +172,13 @@ impl Wanted {
             let start = Instant::now();
             let (rows, steps) = rayon::join(
                 || {
-                    records.chunks(RECORDS).try_for_each(|records| {
+                    records.chunks(RECORDS).enumerate().try_for_each(|(i, records)| {
+                        let write = |w: &mut ResultWriter| match classes {
+                            None => w.write_all(scene, records),
+                            Some(classes) => w.write_classes(classes, &traces[i * RECORDS..][..records.len()], records),
+                        };
                         let (results, events) = rayon::join(
-                            || out.as_mut().map_or(Ok(()), |w| w.write_all(scene, records)),
+                            || out.as_mut().map_or(Ok(()), write),
                             || events.as_mut().map_or(Ok(()), |w| w.write_all(scene, records)),
                         );
                         results.and(events)

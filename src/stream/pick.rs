@@ -7,7 +7,7 @@ use crate::scene::Model;
 use crate::trace::{EndsTrace, Trace};
 
 /// How many traces, and points of them, are read at a time.
-const TRACES: usize = 8192;
+pub(super) const TRACES: usize = 8192;
 const POINTS: usize = 1 << 22;
 
 /// Why traces cannot be picked.

@@ -17,6 +17,7 @@ mod fast;
 mod filter;
 mod formats;
 mod gallery;
+mod homotopy;
 mod house;
 mod live;
 mod naive_rope;

@@ -186,6 +186,7 @@ fn answer(scene: &Scene) -> Summary {
             .iter()
             .map(|&(vertex, at)| Contact { vertex, at: at.into(), label: None, wraps: about(1.2), share: about(0.11) })
             .collect(),
+        classes: None,
         by_obstacle: Some(ByObstacle {
             contacts: about(2.5),
             turns: about(1.5),

@@ -173,6 +173,19 @@ pub(super) fn table(summary: &Summary, scene: &Scene, run: Option<&RunCost>) -> 
         let names = if names.is_empty() { String::new() } else { format!("  round {}", names.join(", ")) };
         line(format_args!("  {turns:24}  {:>7}  {}{names}", percent(rope.share.value), shares(&rope.share)));
     }
+    if let Some(found) = &summary.classes {
+        let least = if found.is_complete { "" } else { "at least " };
+        let different = counted(found.distinct, "homotopy class", "homotopy classes");
+        line(format_args!("\n{least}{different} of ropes at the end, the most common"));
+        for class in found.classes.iter().take(5) {
+            line(format_args!("  {:24}  {:>7}  {}", class.class, percent(class.share.value), shares(&class.share)));
+        }
+        for letter in &found.obstacles {
+            let at = format!("({}, {})", short(letter.at[0]), short(letter.at[1]));
+            let at = letter.label.as_ref().map_or(at.clone(), |label| format!("{label} {at}"));
+            line(format_args!("  o{:<23} is {at}", letter.obstacle));
+        }
+    }
     for (i, anchor) in summary.anchors.iter().flatten().enumerate() {
         if i == 0 {
             line(format_args!(

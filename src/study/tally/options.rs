@@ -22,6 +22,9 @@ pub struct TallyPlan {
     pub map_every: u32,
     /// How many of the most common taut ropes are reported.
     pub ropes: u32,
+    /// How many of the most common homotopy classes of ropes are reported; 0 for none.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub classes: u32,
     /// Whether contacts and turns are also counted by obstacle, however many wall ends of it a rope touches in a row.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub by_obstacle: bool,
@@ -35,6 +38,10 @@ const QUANTILES: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99];
 
 fn are_usual(quantiles: &[f64]) -> bool {
     quantiles == QUANTILES
+}
+
+fn is_zero(number: &u32) -> bool {
+    *number == 0
 }
 
 impl TallyPlan {
@@ -57,6 +64,7 @@ impl Default for TallyPlan {
             map: 64,
             map_every: 8,
             ropes: 10,
+            classes: 0,
             by_obstacle: false,
             anchors: false,
         }

@@ -18,6 +18,9 @@ macro_rules! table {
             obstacles: Vec<tally::Obstacle> = tally::obstacles::Obstacles;
             /// The most common taut ropes at the end, the most common first.
             ropes: Vec<tally::CommonRope> = tally::ropes::Ropes;
+            /// The homotopy classes of ropes at the end, if the study asks for them.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            classes: Option<tally::ClassAnswer> = tally::classes::Classes;
             /// The wall ends with which ropes had contacts, those with the greatest share of steps first, at most a
             /// thousand.
             contacts: Vec<tally::Contact> = tally::contacts::Contacts;

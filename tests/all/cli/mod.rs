@@ -5,6 +5,7 @@ mod batches;
 mod bench;
 mod by_obstacle;
 mod chosen;
+mod classes;
 mod convert;
 mod describe;
 mod draw;
