@@ -81,6 +81,11 @@ class Ropes:
         length), and ``winding_NAME`` for each obstacle of which `Scene.evaluate` was told by ``about``, or else for all
         that have a label: how often the free end has gone all the way round it since the trace began.
 
+        If `Scene.evaluate` was told of ``friction``, there are ``anchor_pull_x`` and ``anchor_pull_y`` (as the rope
+        pulls the anchor), ``turned`` (by which angle it turns in all, in radians), ``tension`` (at the free end when it
+        is hauled, for 1 at the anchor: exp(friction * turned)) and ``work`` (that of the free end since the trace
+        began), before the windings.
+
         The table is in memory: some 70 bytes a step and 8 for each obstacle. `stream_steps` makes it as it is read.
 
         >>> import tautrope
@@ -91,12 +96,15 @@ class Ropes:
         """
         return Table(self._core.steps())
 
-    def stream_steps(self, about: Iterable[str | int] | None = None) -> StepStream:
+    def stream_steps(
+        self, about: Iterable[str | int] | None = None, friction: float | None = None
+    ) -> StepStream:
         """The rows of `steps`, made as they are read: some 250,000 at a time are in memory, and one trace at least.
 
         Args:
             about: Obstacles about which turns are counted, by label or number of a wall end; as for `Scene.evaluate`
                 without it.
+            friction: A coefficient of friction; as for `Scene.evaluate` without it.
 
         >>> import tautrope
         >>> scene = tautrope.Scene.built_in("rooms")
@@ -106,7 +114,7 @@ class Ropes:
         True
         """
         names = names_of(about)
-        return StepStream(self._core.stream_steps(names), (Ropes.stream_steps, (self, names)))
+        return StepStream(self._core.stream_steps(names, friction), (Ropes.stream_steps, (self, names, friction)))
 
     @property
     def columns(self) -> list[str]:

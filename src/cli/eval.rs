@@ -76,7 +76,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut account = Account::new(&args.input.name(), &terms, &*engine, on);
     let files = Files::new(args.out.as_deref(), args.events.as_deref(), model, notes(&terms, &*engine));
     let files = match &args.every.steps {
-        Some(path) => files.with_steps(path, args.every.centres(model.scene())?),
+        Some(path) => files.with_steps(path, args.every.extras(model.scene())?),
         None => files,
     };
     let mut violations = args.input.violations();

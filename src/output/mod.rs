@@ -7,6 +7,7 @@
 mod batches;
 mod columns;
 mod events;
+mod extras;
 mod labels;
 mod merge;
 mod passing;
@@ -29,6 +30,7 @@ use std::path::Path;
 
 pub use batches::{event_batches, result_batches, step_batches};
 pub use events::{EventWriter, write_events};
+pub use extras::Extras;
 pub use merge::merge_results;
 pub use passing::{abandon, commit, remove_left_files};
 pub use points::PointWriter;

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::stack::LastLeg;
 use super::{Contact, Event, EventKind, Moment, Rope};
+use crate::geometry::orient;
 
 /// A trace's rope on its way through the events.
 pub(super) struct Replay<'a> {
@@ -29,6 +30,21 @@ impl<'a> Replay<'a> {
     /// The event that happens next, if that is so up to the end of `step`.
     pub(super) fn due(&self, step: usize) -> Option<&'a Event> {
         self.next().filter(|event| event.step as usize <= step)
+    }
+
+    /// Where the vertex of an event stands.
+    pub(super) fn place(&self, event: &Event) -> DVec2 {
+        self.vertices[event.vertex as usize]
+    }
+
+    /// Which share of a step from one of `ends` to the other has been made when `event` happens to the rope, of which
+    /// `before` had been made when the one before it did.
+    pub(super) fn share(&self, rope: &Rope, event: &Event, ends: [DVec2; 2], before: f64) -> f64 {
+        let line = match event.kind {
+            EventKind::Wrap => [rope.pivot(), self.place(event)],
+            EventKind::Unwrap => [rope.prior(), rope.pivot()],
+        };
+        share_at(line, ends, before)
     }
 
     /// Makes the next event happen to the rope.
@@ -86,13 +102,7 @@ pub fn moments(anchor: DVec2, vertices: &[DVec2], points: &[DVec2], events: &[Ev
         moment.step = k;
         moment.share = 0.0;
         while let Some(event) = replay.due(k) {
-            let rope = &moment.rope;
-            let line = match event.kind {
-                EventKind::Wrap => [rope.pivot(), vertices[event.vertex as usize]],
-                EventKind::Unwrap => [rope.prior(), rope.pivot()],
-            };
-            // Rounding must not turn the order round.
-            moment.share = crossing(line, [from, to]).unwrap_or(moment.share).clamp(moment.share, 1.0);
+            moment.share = replay.share(&moment.rope, event, [from, to], moment.share);
             moment.at = from.lerp(to, moment.share);
             moment.event = Some(replay.happened);
             replay.play(&mut moment.rope);
@@ -102,6 +112,21 @@ pub fn moments(anchor: DVec2, vertices: &[DVec2], points: &[DVec2], events: &[Ev
         each(&moment);
         from = to;
     }
+}
+
+/// Which share of a step between `ends` has been made where something happens to the rope that lies along a line, at
+/// the second of its points, after `before` of it.
+pub(super) fn share_at(line: [DVec2; 2], ends: [DVec2; 2], before: f64) -> f64 {
+    let lies_on_it = ends.iter().all(|&end| orient(line[0], line[1], end) == 0.0);
+    let share = if lies_on_it { passing(line[1], ends) } else { crossing(line, ends) };
+    // Rounding must not turn the order round.
+    share.unwrap_or(before).clamp(before, 1.0)
+}
+
+/// Which share of the way from `a` to `b` has been made where it passes `p`, which lies on it or beyond its ends.
+fn passing(p: DVec2, [a, b]: [DVec2; 2]) -> Option<f64> {
+    let way = b - a;
+    Some((p - a).dot(way) / way.length_squared()).filter(|share| share.is_finite())
 }
 
 /// Which share of the way from `a` to `b` has been made where it meets the line through `o` and `p`, if it meets it

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 
 use super::{OnViolation, Stage, StreamError, Times};
 use crate::engine::{Engine, Job};
-use crate::output::{EventWriter, ResultWriter, StepWriter, WholeFile, commit};
+use crate::output::{EventWriter, Extras, ResultWriter, StepWriter, WholeFile, commit};
 use crate::read_error::ReadError;
 use crate::rope::{EndsRecord, TraceRecord};
-use crate::scene::{Centre, Model, Scene};
+use crate::scene::{Model, Scene};
 use crate::trace::{End, EndsTrace, SettledEnds, Trace, TraceReader, read_traces, settle_ends};
 
 /// How many points the free ends of a batch have together at most.
@@ -88,8 +88,8 @@ pub struct EndsFiles<'a> {
     pub out: Option<&'a Path>,
     /// One row a wrap or unwrap, with the end at which it happened.
     pub events: Option<&'a Path>,
-    /// One row a step, and about what turns of the free end are counted.
-    pub steps: Option<(&'a Path, &'a [Centre])>,
+    /// One row a step, and what is told beside the ropes.
+    pub steps: Option<(&'a Path, &'a Extras)>,
 }
 
 /// How far such a stream is.
@@ -148,7 +148,7 @@ impl Writers {
         let scene = model.scene();
         let out = files.out.map(|path| ResultWriter::create(path, scene)).transpose()?;
         let events = files.events.map(|path| EventWriter::of_ends(path, scene)).transpose()?;
-        let steps = files.steps.map(|(path, centres)| StepWriter::of_ends(path, model, centres)).transpose()?;
+        let steps = files.steps.map(|(path, extras)| StepWriter::of_ends(path, model, extras)).transpose()?;
         Ok(Writers { out, events, steps })
     }
 

@@ -8,9 +8,9 @@ use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
 use super::StreamError;
-use crate::output::{EventWriter, ResultWriter, StepWriter, WholeFile, WriteError, commit};
+use crate::output::{EventWriter, Extras, ResultWriter, StepWriter, WholeFile, WriteError, commit};
 use crate::rope::TraceRecord;
-use crate::scene::{Centre, Model};
+use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 /// How many records are written at a time; their text is held in memory.
@@ -28,8 +28,8 @@ pub struct Files {
 struct Wanted {
     out: Option<PathBuf>,
     events: Option<PathBuf>,
-    /// And about what turns are counted.
-    steps: Option<(PathBuf, Vec<Centre>)>,
+    /// And what is told beside the ropes.
+    steps: Option<(PathBuf, Extras)>,
     model: Arc<Model>,
     /// What is noted in Parquet files.
     notes: Vec<(&'static str, String)>,
@@ -60,11 +60,11 @@ impl Files {
         Files { wanted: Wanted { out, events, steps: None, model: model.clone(), notes }, running: None }
     }
 
-    /// The same with the rope after every step in the file at `steps`, and turns counted about each of `centres`: see
+    /// The same with the rope after every step in the file at `steps`, and what `extras` asks for beside it: see
     /// [`StepWriter`].
     #[must_use]
-    pub fn with_steps(mut self, steps: &Path, centres: Vec<Centre>) -> Self {
-        self.wanted.steps = Some((steps.to_owned(), centres));
+    pub fn with_steps(mut self, steps: &Path, extras: Extras) -> Self {
+        self.wanted.steps = Some((steps.to_owned(), extras));
         self
     }
 
@@ -142,7 +142,7 @@ impl Wanted {
         let scene = self.model.scene();
         let mut out = self.out.as_deref().map(|path| ResultWriter::create(path, scene)).transpose()?;
         let mut events = self.events.as_deref().map(|path| EventWriter::create(path, scene)).transpose()?;
-        let steps = self.steps.as_ref().map(|(path, centres)| StepWriter::create(path, &self.model, centres));
+        let steps = self.steps.as_ref().map(|(path, extras)| StepWriter::create(path, &self.model, extras));
         let mut steps = steps.transpose()?;
         for (key, value) in &self.notes {
             out.iter_mut().for_each(|out| out.note(key, value));

@@ -75,7 +75,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     keep_apart(&[("the study's scene.file", scene), ("the study's walk.file", given)], &outputs)?;
     let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
     [events, points, steps].into_iter().flatten().try_for_each(check_output)?;
-    let centres = args.every.centres(model.scene())?;
+    let extras = args.every.extras(model.scene())?;
     let target = args.draw.as_deref().map(|path| Target::new(path, &args.look)).transpose()?;
     let mut engine: Box<dyn Engine> = match plan.run.precision {
         Precision::Certified => Box::new(Reference::new(model.clone())),
@@ -92,7 +92,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         events.finish()?;
     }
     if let Some(path) = steps {
-        let mut steps = StepWriter::create(path, model, &centres)?;
+        let mut steps = StepWriter::create(path, model, &extras)?;
         steps.write_all(std::slice::from_ref(&trace), std::slice::from_ref(&record))?;
         steps.finish()?;
     }
