@@ -118,15 +118,16 @@ pub fn moments(anchor: DVec2, vertices: &[DVec2], points: &[DVec2], events: &[Ev
 /// the second of its points, after `before` of it.
 pub(super) fn share_at(line: [DVec2; 2], ends: [DVec2; 2], before: f64) -> f64 {
     let lies_on_it = ends.iter().all(|&end| orient(line[0], line[1], end) == 0.0);
-    let share = if lies_on_it { passing(line[1], ends) } else { crossing(line, ends) };
+    let share = if lies_on_it { passing(line, ends) } else { crossing(line, ends) };
     // Rounding must not turn the order round.
     share.unwrap_or(before).clamp(before, 1.0)
 }
 
-/// Which share of the way from `a` to `b` has been made where it passes `p`, which lies on it or beyond its ends.
-fn passing(p: DVec2, [a, b]: [DVec2; 2]) -> Option<f64> {
+/// Which share of the way from `a` to `b`, which lies on the line from `o` through `p`, has been made where it first is
+/// beyond `p`: until then nothing happens to the rope there. `None` where that is so from the beginning or never.
+fn passing([o, p]: [DVec2; 2], [a, b]: [DVec2; 2]) -> Option<f64> {
     let way = b - a;
-    Some((p - a).dot(way) / way.length_squared()).filter(|share| share.is_finite())
+    (way.dot(p - o) > 0.0).then(|| (p - a).dot(way) / way.length_squared())
 }
 
 /// Which share of the way from `a` to `b` has been made where it meets the line through `o` and `p`, if it meets it
