@@ -6,7 +6,6 @@ use glam::DVec2;
 
 use super::stack::LastLeg;
 use super::{Contact, Event, EventKind, Moment, Rope};
-use crate::geometry::orient;
 
 /// A trace's rope on its way through the events.
 pub(super) struct Replay<'a> {
@@ -116,18 +115,37 @@ pub fn moments(anchor: DVec2, vertices: &[DVec2], points: &[DVec2], events: &[Ev
 
 /// Which share of a step between `ends` has been made where something happens to the rope that lies along a line, at
 /// the second of its points, after `before` of it.
+///
+/// The free end is on the line then, and beyond that point: the rope is as long with that contact as without it. Where
+/// the step goes along the line, or so nearly that roundings decide where the two meet, that alone says where it is.
 pub(super) fn share_at(line: [DVec2; 2], ends: [DVec2; 2], before: f64) -> f64 {
-    let lies_on_it = ends.iter().all(|&end| orient(line[0], line[1], end) == 0.0);
-    let share = if lies_on_it { passing(line, ends) } else { crossing(line, ends) };
+    let [o, p] = line;
+    // By how much, of its length, the rope would be longer with the contact.
+    let excess = |share: f64| {
+        let at = ends[0].lerp(ends[1], share);
+        let with = o.distance(p) + p.distance(at);
+        (with - o.distance(at)) / with
+    };
     // Rounding must not turn the order round.
-    share.unwrap_or(before).clamp(before, 1.0)
+    let crossing = crossing(line, ends).map(|share| share.clamp(before, 1.0));
+    match crossing.filter(|&share| excess(share) < NEARLY) {
+        Some(share) => share,
+        None => {
+            let passing = passing(line, ends).map(|share| share.clamp(before, 1.0));
+            let shares = [crossing, passing, Some(before)].into_iter().flatten();
+            shares.min_by(|&one, &other| excess(one).total_cmp(&excess(other))).unwrap_or(before)
+        }
+    }
 }
 
-/// Which share of the way from `a` to `b`, which lies on the line from `o` through `p`, has been made where it first is
-/// beyond `p`: until then nothing happens to the rope there. `None` where that is so from the beginning or never.
+/// Which excess may come from roundings.
+const NEARLY: f64 = 1e-9;
+
+/// Which share of the way from `a` to `b`, along the line from `o` through `p`, has been made where it comes beyond
+/// `p`; `None` where it goes the other way.
 fn passing([o, p]: [DVec2; 2], [a, b]: [DVec2; 2]) -> Option<f64> {
-    let way = b - a;
-    (way.dot(p - o) > 0.0).then(|| (p - a).dot(way) / way.length_squared())
+    let (along, way) = (p - o, b - a);
+    (way.dot(along) > 0.0).then(|| (p - a).dot(along) / way.dot(along))
 }
 
 /// Which share of the way from `a` to `b` has been made where it meets the line through `o` and `p`, if it meets it
