@@ -190,6 +190,31 @@ class Ropes:
             return points[offsets[place] : offsets[place + 1]]
         return self._core.rope_at(place, step)
 
+    def forces(
+        self, trace: int, step: int | None = None, friction: float = 0.0, holds: bool = False
+    ) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
+        """The forces of a rope on what it bends round, for a tension of 1 at the anchor: an array for each column, with
+        an entry for each turn from the anchor on.
+
+        ``x`` and ``y`` say where the rope turns, ``turn`` by which angle in radians, ``before`` and ``beyond`` its
+        tension on the side of the anchor and on that of the free end, ``force_x`` and ``force_y`` the force.
+
+        Args:
+            trace: The trace's number.
+            step: After which step; at the end without it.
+            friction: A coefficient of friction from 0 to 10.
+            holds: Whether the free end only holds, so that the rope is about to slip towards the anchor; otherwise it
+                hauls. Without friction that makes no difference.
+
+        >>> import tautrope
+        >>> scene = tautrope.Scene([[[1, 0], [1, 9]]], anchor=(0, 0))
+        >>> ropes = scene.evaluate([[(0, 0), (1, -1), (2, -1), (2, 1)]])
+        >>> ropes.forces(0)["turn"].round(4), ropes.forces(0, friction=0.5)["beyond"].round(4)
+        (array([0.7854]), array([1.481]))
+        """
+        names = ("x", "y", "turn", "before", "beyond", "force_x", "force_y")
+        return dict(zip(names, _core.forces(self.rope(trace, step), friction, holds), strict=True))
+
     def _place(self, trace: int) -> int:
         numbers = self["trace"]
         place = int(np.searchsorted(numbers, trace)) if trace >= 0 else len(numbers)
