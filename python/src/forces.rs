@@ -22,6 +22,6 @@ pub(crate) fn forces<'py>(
     let corners: Vec<DVec2> = corners.as_array().rows().into_iter().map(|row| DVec2::new(row[0], row[1])).collect();
     let all = all_forces(&corners, friction, if holds { Slip::ToAnchor } else { Slip::ToFreeEnd });
     let columns: [fn(&Force) -> f64; 7] =
-        [|f| f.at.x, |f| f.at.y, |f| f.turn, |f| f.before, |f| f.beyond, |f| f.force.x, |f| f.force.y];
+        [|f| f.at.x, |f| f.at.y, |f| f.angle, |f| f.before, |f| f.beyond, |f| f.force.x, |f| f.force.y];
     Ok(columns.iter().map(|column| PyArray1::from_iter(py, all.iter().map(column))).collect())
 }

@@ -196,7 +196,7 @@ class Ropes:
         """The forces of a rope on what it bends round, for a tension of 1 at the anchor: an array for each column, with
         an entry for each turn from the anchor on.
 
-        ``x`` and ``y`` say where the rope turns, ``turn`` by which angle in radians, ``before`` and ``beyond`` its
+        ``x`` and ``y`` say where the rope turns, ``angle`` by which angle in radians, ``before`` and ``beyond`` its
         tension on the side of the anchor and on that of the free end, ``force_x`` and ``force_y`` the force.
 
         Args:
@@ -209,10 +209,10 @@ class Ropes:
         >>> import tautrope
         >>> scene = tautrope.Scene([[[1, 0], [1, 9]]], anchor=(0, 0))
         >>> ropes = scene.evaluate([[(0, 0), (1, -1), (2, -1), (2, 1)]])
-        >>> ropes.forces(0)["turn"].round(4), ropes.forces(0, friction=0.5)["beyond"].round(4)
+        >>> ropes.forces(0)["angle"].round(4), ropes.forces(0, friction=0.5)["beyond"].round(4)
         (array([0.7854]), array([1.481]))
         """
-        names = ("x", "y", "turn", "before", "beyond", "force_x", "force_y")
+        names = ("x", "y", "angle", "before", "beyond", "force_x", "force_y")
         return dict(zip(names, _core.forces(self.rope(trace, step), friction, holds), strict=True))
 
     def _place(self, trace: int) -> int:

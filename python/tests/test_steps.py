@@ -121,8 +121,8 @@ def test_friction_is_the_programs_and_the_formulas(
         for holds in (False, True):
             forces = ropes.forces(trace, friction=0.3, holds=holds)
             tension = steps["tension"][trace, -1] ** (-1 if holds else 1)
-            assert len(forces["turn"]) == ropes["depth"][trace]
-            assert np.isclose(forces["turn"].sum(), steps["turned"][trace, -1])
+            assert len(forces["angle"]) == ropes["depth"][trace]
+            assert np.isclose(forces["angle"].sum(), steps["turned"][trace, -1])
             for axis in "xy":
                 pulls = steps[f"anchor_pull_{axis}"][trace, -1] + tension * steps[f"pull_{axis}"][trace, -1]
                 assert np.isclose(forces[f"force_{axis}"].sum(), -pulls)

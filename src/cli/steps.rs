@@ -20,10 +20,10 @@ pub(crate) struct StepArgs {
     /// end; may be given several times [default: all that have a label]
     #[arg(long, value_name = "NAME", requires = "steps")]
     about: Vec<String>,
-    /// With --steps: how ropes pull at both ends, by which angle they turn, and what friction with this coefficient
+    /// With --steps: how ropes pull the anchor too, by which angle they turn, and what friction with this coefficient
     /// makes of their tension and of the work of the free end
-    #[arg(long, value_name = "MU", requires = "steps", allow_negative_numbers = true, value_parser = friction)]
-    friction: Option<Friction>,
+    #[arg(long, value_name = "MU", allow_negative_numbers = true, value_parser = friction)]
+    pub friction: Option<Friction>,
 }
 
 /// A coefficient of friction.

@@ -22,7 +22,8 @@ use super::stack::{is_straight, pull};
 /// assert_eq!(friction.tension(PI, Slip::ToAnchor), (-PI / 2.0).exp());
 /// # Ok::<(), tautline::rope::FrictionFault>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The default is none: 0.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Friction(f64);
 
 /// Which way a rope slips over all that it touches: who is just about to lose.
@@ -125,13 +126,13 @@ pub struct Force {
     /// Where that is.
     pub at: DVec2,
     /// By which angle the rope turns there, in radians: [`turn`].
-    pub turn: f64,
+    pub angle: f64,
     /// The rope's tension on the side of the anchor, where that at the anchor is 1.
     pub before: f64,
     /// And on the side of the free end.
     pub beyond: f64,
     /// The force on the point: the sum of both tensions along the rope. Without friction it halves the angle, and has
-    /// the size 2 sin(turn / 2).
+    /// the size 2 sin(angle / 2).
     pub force: DVec2,
 }
 
@@ -151,13 +152,13 @@ pub fn forces(corners: &[DVec2], friction: Friction, slip: Slip) -> Vec<Force> {
     let mut turned = Sum::default();
     let mut force = |three: &[DVec2]| {
         let (prior, at, next) = (three[0], three[1], three[2]);
-        let turn = turn(prior, at, next);
+        let angle = turn(prior, at, next);
         let before = friction.tension(turned.value(), slip);
-        turned = turned.and(turn);
+        turned = turned.and(angle);
         let beyond = friction.tension(turned.value(), slip);
         let unit = |to: DVec2| pull(to, at).unwrap_or_default();
-        let force = if turn == 0.0 { DVec2::ZERO } else { unit(prior) * before + unit(next) * beyond };
-        Force { at, turn, before, beyond, force }
+        let force = if angle == 0.0 { DVec2::ZERO } else { unit(prior) * before + unit(next) * beyond };
+        Force { at, angle, before, beyond, force }
     };
     corners.windows(3).map(&mut force).collect()
 }

@@ -8,8 +8,8 @@ use std::thread::{JoinHandle, spawn};
 use std::time::{Duration, Instant};
 
 use super::StreamError;
-use crate::output::{EventWriter, Extras, ResultWriter, StepWriter, WholeFile, WriteError, commit};
-use crate::rope::TraceRecord;
+use crate::output::{EventWriter, Extras, ForceWriter, ResultWriter, StepWriter, WholeFile, WriteError, commit};
+use crate::rope::{Friction, TraceRecord};
 use crate::scene::Model;
 use crate::trace::SettledTrace;
 
@@ -30,6 +30,8 @@ struct Wanted {
     events: Option<PathBuf>,
     /// And what is told beside the ropes.
     steps: Option<(PathBuf, Extras)>,
+    /// And with which friction.
+    forces: Option<(PathBuf, Friction)>,
     model: Arc<Model>,
     /// What is noted in Parquet files.
     notes: Vec<(&'static str, String)>,
@@ -57,7 +59,7 @@ impl Files {
         notes: Vec<(&'static str, String)>,
     ) -> Self {
         let [out, events] = [out, events].map(|path| path.map(Path::to_owned));
-        Files { wanted: Wanted { out, events, steps: None, model: model.clone(), notes }, running: None }
+        Files { wanted: Wanted { out, events, steps: None, forces: None, model: model.clone(), notes }, running: None }
     }
 
     /// The same with the rope after every step in the file at `steps`, and what `extras` asks for beside it: see
@@ -68,8 +70,17 @@ impl Files {
         self
     }
 
+    /// The same with the forces of the ropes at the end, with that friction, in the file at `forces`: see
+    /// [`ForceWriter`].
+    #[must_use]
+    pub fn with_forces(mut self, forces: &Path, friction: Friction) -> Self {
+        self.wanted.forces = Some((forces.to_owned(), friction));
+        self
+    }
+
     /// Takes the next records, and waits while those before are being written. Their traces, in the same order, are
-    /// needed where [every step](Self::with_steps) is to be written, and may be left out elsewhere.
+    /// needed where [every step](Self::with_steps) or [forces](Self::with_forces) are to be written, and may be left
+    /// out elsewhere.
     ///
     /// # Errors
     ///
@@ -79,7 +90,7 @@ impl Files {
             return Ok(());
         }
         // Memory is for those who ask.
-        let traces = if self.wanted.steps.is_some() { traces } else { Vec::new() };
+        let traces = if self.wanted.steps.is_some() || self.wanted.forces.is_some() { traces } else { Vec::new() };
         let running = self.run();
         let sent = running.sender.as_ref().map(|sender| sender.send((traces, records)));
         // The thread ends early for a reason, which it tells.
@@ -133,7 +144,7 @@ impl Drop for Running {
 
 impl Wanted {
     fn is_any(&self) -> bool {
-        self.out.is_some() || self.events.is_some() || self.steps.is_some()
+        self.out.is_some() || self.events.is_some() || self.steps.is_some() || self.forces.is_some()
     }
 
     /// Writes all that comes.
@@ -144,10 +155,13 @@ impl Wanted {
         let mut events = self.events.as_deref().map(|path| EventWriter::create(path, scene)).transpose()?;
         let steps = self.steps.as_ref().map(|(path, extras)| StepWriter::create(path, &self.model, extras));
         let mut steps = steps.transpose()?;
+        let forces = self.forces.as_ref().map(|(path, friction)| ForceWriter::create(path, &self.model, *friction));
+        let mut forces = forces.transpose()?;
         for (key, value) in &self.notes {
             out.iter_mut().for_each(|out| out.note(key, value));
             events.iter_mut().for_each(|events| events.note(key, value));
             steps.iter_mut().for_each(|steps| steps.note(key, value));
+            forces.iter_mut().for_each(|forces| forces.note(key, value));
         }
         for (traces, records) in evaluated {
             let start = Instant::now();
@@ -164,6 +178,7 @@ impl Wanted {
                 || steps.as_mut().map_or(Ok(()), |w| w.write_all(&traces, &records)),
             );
             rows.and(steps)?;
+            forces.as_mut().map_or(Ok(()), |w| w.write_all(&traces, &records))?;
             took += start.elapsed();
         }
         let start = Instant::now();
@@ -171,6 +186,7 @@ impl Wanted {
         let out = out.map(ResultWriter::complete).transpose()?;
         let events = events.map(EventWriter::complete).transpose()?;
         let steps = steps.map(StepWriter::complete).transpose()?;
-        Ok(([out, events, steps].into_iter().flatten().collect(), took + start.elapsed()))
+        let forces = forces.map(ForceWriter::complete).transpose()?;
+        Ok(([out, events, steps, forces].into_iter().flatten().collect(), took + start.elapsed()))
     }
 }

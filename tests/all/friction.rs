@@ -88,7 +88,7 @@ fn forces_halve_the_angle_and_add_up_to_the_pulls_of_the_ends() {
     for (sides, turns) in [(3, 1), (5, 3), (50, 120)] {
         let (points, _) = spiral(sides, turns);
         for force in forces(&points, of(0.0), Slip::ToFreeEnd) {
-            assert!((force.force.length() - 2.0 * (force.turn / 2.0).sin()).abs() < 1e-14);
+            assert!((force.force.length() - 2.0 * (force.angle / 2.0).sin()).abs() < 1e-14);
             // On a circle the middle of the angle leads inwards.
             assert!(force.force.normalize().distance(-force.at.normalize()) < 1e-13);
         }

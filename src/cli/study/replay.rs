@@ -60,6 +60,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             args.trace
         )));
     }
+    if args.every.friction.is_some() && args.every.steps.is_none() {
+        return Err(Failure::input(anyhow!("--friction: say with --steps where to write what it makes")));
+    }
     let [events, points, steps, draw] =
         [&args.events, &args.points, &args.every.steps, &args.draw].map(Option::as_deref);
     let outputs = [("--events", events), ("--points", points), ("--steps", steps), ("--draw", draw)];

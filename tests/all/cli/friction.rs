@@ -86,6 +86,62 @@ fn friction_adds_columns_in_all_formats() {
     }
 }
 
+/// Forces against the steps, in all formats, with names and with both ends.
+#[test]
+fn forces_are_those_of_the_last_ropes() {
+    let folder = Folder::floor_plan(40, 200);
+    let eval = "eval --scene s.geojson --traces t.csv --friction 0.3";
+    for format in ["csv", "jsonl", "parquet"] {
+        folder.done(&format!("{eval} --forces f.{format} --out r.jsonl --steps s.csv"));
+    }
+    let forces = columns(&folder.text("f.csv"));
+    assert!(folder.text("f.csv").starts_with("trace,vertex,x,y,angle,before,beyond,force_x,force_y\n"));
+    let steps = columns(&folder.text("s.csv"));
+    let batch = read(&folder, "f.parquet").remove(0);
+    let lines = folder.text("f.jsonl");
+    let objects: Vec<Value> = lines.lines().map(json).collect();
+    assert_eq!((batch.num_rows(), objects.len()), (forces["trace"].len(), forces["trace"].len()));
+    for name in ["x", "y", "angle", "before", "beyond", "force_x", "force_y"] {
+        let values = numbers(&forces, name);
+        assert_eq!(batch.column_by_name(name).unwrap().as_primitive::<Float64Type>().values(), &values[..]);
+        assert!(objects.iter().zip(&values).all(|(object, value)| object[name].as_f64() == Some(*value)), "{name}");
+    }
+    let mut row = 0;
+    for line in folder.text("r.jsonl").lines().map(json) {
+        let trace = line["trace"].as_u64().unwrap() as usize;
+        let of = |name: &str| numbers(&steps, name)[201 * trace + 200];
+        let (mut sum, mut angles) = ([0.0; 2], 0.0);
+        let turns = line["wraps"].as_array().unwrap();
+        for at in turns {
+            let values = ["x", "y", "force_x", "force_y", "angle"].map(|name| numbers(&forces, name)[row]);
+            assert_eq!([&at[0], &at[1]].map(|x| x.as_f64().unwrap()), [values[0], values[1]]);
+            sum = [sum[0] + values[2], sum[1] + values[3]];
+            angles += values[4];
+            row += 1;
+        }
+        assert!((angles - of("turned")).abs() < 1e-13, "{angles}");
+        if !turns.is_empty() {
+            assert!((numbers(&forces, "beyond")[row - 1] / of("tension") - 1.0).abs() < 1e-13);
+            // With the pulls of both ends they are in balance.
+            for (sum, axis) in sum.into_iter().zip(["x", "y"]) {
+                let pulls = of(&format!("anchor_pull_{axis}")) + of("tension") * of(&format!("pull_{axis}"));
+                assert!((sum + pulls).abs() < 1e-12 * of("tension"), "{sum} {pulls}");
+            }
+        }
+    }
+    assert!(row == forces["trace"].len() && row > 40);
+    // Where both ends move the rope is that between where they are at last.
+    let docs = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/examples");
+    folder.done(&format!("eval --scene {docs}/harbour.geojson --traces {docs}/tow.csv --forces tow.csv"));
+    // Round the mole's end at (8, 2.5), from the barge at (5, 4.4) to the tug at (10.5, 4.5).
+    let (back, on) = ((-3.0f64, 1.9f64), (2.5f64, 2.0f64));
+    let [x, y] =
+        [(back.0, on.0), (back.1, on.1)].map(|(one, other)| one / back.0.hypot(back.1) + other / on.0.hypot(on.1));
+    let tow = columns(&folder.text("tow.csv"));
+    assert!((numbers(&tow, "force_x")[0] - x).abs() < 1e-15 && (numbers(&tow, "force_y")[0] - y).abs() < 1e-15);
+    assert_eq!((tow["label"][0].as_str(), tow["vertex"][0].as_str(), tow["beyond"][0].as_str()), ("mole", "2", "1.0"));
+}
+
 #[test]
 fn what_is_no_coefficient_is_refused() {
     let folder = Folder::hand_made();
@@ -95,7 +151,9 @@ fn what_is_no_coefficient_is_refused() {
     {
         folder.refused(2, &format!("{eval} --steps s.csv --friction {bad}"), &["--friction", says]);
     }
-    folder.refused(2, &format!("{eval} --friction 0.2"), &["--steps"]);
+    folder.refused(2, &format!("{eval} --friction 0.2"), &["--friction: say with --steps or --forces"]);
+    folder.refused(2, &format!("{eval} --forces t.csv"), &["t.csv"]);
+    folder.refused(2, &format!("{eval} --forces f.txt"), &["f.txt", ".parquet"]);
     folder.write(
         "a.toml",
         "[scene]\nbuilt_in = \"rooms\"\n[walk]\nkind = \"uniform\"\nstep = 0.4\nsteps = 9\n[run]\ntraces = 9\n",
@@ -206,7 +264,7 @@ fn the_climbers_rope_is_as_its_page_says() {
         .for_each(|name| folder.write(name, kept(name)));
     let page = kept("climbing.md");
     let commands: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("    tautline ")).collect();
-    assert_eq!(commands.len(), 4);
+    assert_eq!(commands.len(), 5);
     commands.iter().for_each(|command| drop(folder.done(command)));
     let [short, long] = ["short.csv", "long.csv"].map(|name| columns(&folder.text(name)));
     let heights: Vec<usize> =
@@ -219,6 +277,13 @@ fn the_climbers_rope_is_as_its_page_says() {
             format!("{turned:.3} | {tension:.2}")
         };
         let row = format!("| {height} m | {} | {} |", of(&short), of(&long));
+        assert!(page.contains(&row), "docs/examples/climbing.md does not say {row}");
+    }
+    let forces = columns(&folder.text("forces.csv"));
+    let [angles, x, y] = ["angle", "force_x", "force_y"].map(|name| numbers(&forces, name));
+    assert_eq!(angles.len(), 6);
+    for (i, label) in forces["label"].iter().enumerate() {
+        let row = format!("| {label} | {:.3} | {:.2} |", angles[i], x[i].hypot(y[i]));
         assert!(page.contains(&row), "docs/examples/climbing.md does not say {row}");
     }
     let words = page.split_whitespace().collect::<Vec<_>>().join(" ");
