@@ -114,32 +114,21 @@ pub fn moments(anchor: DVec2, vertices: &[DVec2], points: &[DVec2], events: &[Ev
 }
 
 /// Which share of a step between `ends` has been made where something happens to the rope that lies along a line, at
-/// the second of its points, after `before` of it.
+/// the second of its points, after `before` of it: where the step meets the line.
 ///
-/// The free end is on the line then, and beyond that point: the rope is as long with that contact as without it. Where
-/// the step goes along the line, or so nearly that roundings decide where the two meet, that alone says where it is.
+/// A step along the line, but for roundings, meets it nowhere or anywhere. What happens does so beyond that second
+/// point, where the rope is as long with that contact as without it.
 pub(super) fn share_at(line: [DVec2; 2], ends: [DVec2; 2], before: f64) -> f64 {
-    let [o, p] = line;
-    // By how much, of its length, the rope would be longer with the contact.
-    let excess = |share: f64| {
-        let at = ends[0].lerp(ends[1], share);
-        let with = o.distance(p) + p.distance(at);
-        (with - o.distance(at)) / with
-    };
+    let size = line.iter().chain(&ends).map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let along = line[1] - line[0];
+    let is_on_it = |end: &DVec2| along.perp_dot(*end - line[0]).abs() <= ROUNDED * size * along.length();
+    let share = if ends.iter().all(is_on_it) { passing(line, ends) } else { crossing(line, ends) };
     // Rounding must not turn the order round.
-    let crossing = crossing(line, ends).map(|share| share.clamp(before, 1.0));
-    match crossing.filter(|&share| excess(share) < NEARLY) {
-        Some(share) => share,
-        None => {
-            let passing = passing(line, ends).map(|share| share.clamp(before, 1.0));
-            let shares = [crossing, passing, Some(before)].into_iter().flatten();
-            shares.min_by(|&one, &other| excess(one).total_cmp(&excess(other))).unwrap_or(before)
-        }
-    }
+    share.unwrap_or(before).clamp(before, 1.0)
 }
 
-/// Which excess may come from roundings.
-const NEARLY: f64 = 1e-9;
+/// By how much of the greatest coordinate roundings can put a point off a line: some units in the last place.
+const ROUNDED: f64 = 16.0 * f64::EPSILON;
 
 /// Which share of the way from `a` to `b`, along the line from `o` through `p`, has been made where it comes beyond
 /// `p`; `None` where it goes the other way.
@@ -262,6 +251,24 @@ mod tests {
             all_events += events;
         }
         assert!(all_events > 50, "{all_events}");
+    }
+
+    /// Steps along the line of a leg, but for roundings, which put the ends on this side of it or that.
+    #[test]
+    fn a_step_along_a_leg_meets_its_end_where_the_rope_has_one_length() {
+        let mut apart = 0;
+        for i in 1..2000 {
+            let along = DVec2::from_angle(f64::from(i));
+            let origin = DVec2::new(f64::from(i % 7) / 3.0, f64::from(i % 5) / 7.0);
+            let on = |far: f64| origin + along * far;
+            let (line, [near, far]) = ([on(0.0), on(1.0)], [on(0.3), on(1.9)]);
+            for (ends, least, most) in [([near, far], 0.7 / 1.6, 0.7 / 1.6), ([far, near], 0.0, 0.9 / 1.6)] {
+                let share = share_at(line, ends, 0.0);
+                assert!(share > least - 1e-9 && share < most + 1e-9, "{i}: {share}");
+                apart += u32::from(crossing(line, ends).is_some_and(|s| s < least - 0.1 || s > most + 0.1));
+            }
+        }
+        assert!(apart > 100, "{apart}");
     }
 
     #[test]

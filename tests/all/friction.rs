@@ -278,6 +278,37 @@ fn friction_only_takes() {
     check(true, work_goes_one_way);
 }
 
+/// Steps along the rope itself: up and down lines on which wall ends lie, and on the middle of a wall, where points are
+/// rounded. No crossing of lines says there when a contact comes or goes.
+#[test]
+fn work_is_right_along_the_rope_itself() {
+    let column: &[[[f64; 2]; 2]] =
+        &[[[1.0, 2.0], [1.0, 1.0]], [[-1.0, -1.0], [3.0, -1.0]], [[1.0, 4.0], [1.0, 3.0]], [[0.0, 5.0], [0.0, 2.0]]];
+    let up = [[0.5, 1.0], [1.0, 4.0], [-0.5, 7.0], [3.0, 10.5], [1.0, -1.0], [1.0, 4.0], [1.5, 4.5]];
+    let walls: &[[[f64; 2]; 2]] = &[
+        [[0.332611083984375, 0.63104248046875], [0.285601806640625, 0.54215087890625]],
+        [[0.7176513671875, 0.406829833984375], [0.4409912109375, 0.522344970703125]],
+    ];
+    let along = [
+        [0.013, 0.70639208984375],
+        [0.9074244384765625, 0.70639208984375],
+        [1.0513453369140624, 0.26748828125],
+        [0.4409912109375, 0.522344970703125],
+        [0.5793212890625, 0.46458740234375],
+        [0.4409912109375, 0.522344970703125],
+        [0.285601806640625, 0.54215087890625],
+    ];
+    for (walls, points) in [(column, up), (walls, along)] {
+        let scene = Scene::new(walls.iter().map(|ends| ends.map(DVec2::from))).unwrap();
+        let model = Arc::new(Model::new(scene, Some(at(0.013, 0.017))).unwrap());
+        let trace = Trace { id: 0, points: points.map(DVec2::from).to_vec() };
+        assert_eq!(settle(&model, &trace).violation(), None);
+        work_goes_one_way(&model, &trace);
+        let deepest = told(&model, &settle(&model, &trace), &record(&model, &settle(&model, &trace)), 0.0);
+        assert!(deepest.iter().any(|(step, _)| step.contacts > 3));
+    }
+}
+
 #[test]
 fn strain_scales_with_the_scene() {
     let plan = tautline::example::floor_plan();
