@@ -18,8 +18,11 @@ use crate::rope::{EndsRecord, Force, Friction, Slip, TraceRecord, forces};
 use crate::scene::Model;
 use crate::trace::{End, SettledEnds, SettledTrace};
 
+/// A number of a force.
+type Number = fn(&Force) -> f64;
+
 /// The names of the columns of numbers, and what they hold.
-const NUMBERS: [(&str, fn(&Force) -> f64); 7] = [
+const NUMBERS: [(&str, Number); 7] = [
     ("x", |f| f.at.x),
     ("y", |f| f.at.y),
     ("angle", |f| f.angle),

@@ -99,8 +99,11 @@ const TETHER: [(&str, Told); 3] = [
     ("first_held_back_mean", |tether| tether.first),
 ];
 
-/// What is told of friction in all points.
-const FRICTION: [(&str, fn(&FrictionAnswer) -> Estimate); 2] =
+/// Something that is told of friction.
+type Strained = fn(&FrictionAnswer) -> Estimate;
+
+/// All of it that every point has.
+const FRICTION: [(&str, Strained); 2] =
     [("tension", |friction| friction.tension.mean), ("work", |friction| friction.work.mean)];
 
 /// Part of an estimate.
