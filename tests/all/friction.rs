@@ -241,7 +241,7 @@ fn work_is_known_past_a_wall() {
         assert!((all[2].1.work - 3.0 - there).abs() < 1e-10 * there, "mu {mu}: {} {there}", all[2].1.work - 3.0);
         let lost = there - back;
         assert!((all[3].1.work - 3.0 - lost).abs() < 1e-10 * there.max(1.0), "mu {mu}: {} {lost}", all[3].1.work);
-        assert_eq!(all[2].1.turned, 6f64.atan2(2.0));
+        assert_eq!(all[2].1.turned, libm::atan2(6.0, 2.0));
     }
 }
 
