@@ -41,13 +41,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let walked = walks(&model, Walker { step: 0.25, steps: STEPS as usize, seed: 1 }, 2000);
     let settled: Vec<_> = walked.iter().map(|trace| settle(&model, trace)).collect();
     let records = Cpu::new(model.clone()).evaluate(&settled, &Job::new())?;
-    let centres = model.scene().called(&["0".to_owned(), "200".to_owned(), "400".to_owned()])?;
+    let extras = model.scene().called(&["0".to_owned(), "200".to_owned(), "400".to_owned()])?.into();
     let times = rows.div_ceil(settled.len() as u64 * (STEPS + 1)).max(1);
 
     let folder = tempfile::tempdir()?;
     let ours = folder.path().join("steps.parquet");
     let write_steps = |times: u64| -> Result<(), Box<dyn Error>> {
-        let mut writer = StepWriter::create(&ours, &model, &centres)?;
+        let mut writer = StepWriter::create(&ours, &model, &extras)?;
         for _ in 0..times {
             writer.write_all(&settled, &records)?;
         }

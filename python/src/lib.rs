@@ -4,6 +4,7 @@
 mod arrow_in;
 mod compute;
 mod fault;
+mod forces;
 mod going;
 mod live;
 mod parts;
@@ -20,6 +21,8 @@ use pyo3::prelude::*;
 
 #[pymodule(gil_used = true)]
 mod _tautrope {
+    #[pymodule_export]
+    use super::forces::forces;
     #[pymodule_export]
     use super::live::LiveRope;
     #[pymodule_export]

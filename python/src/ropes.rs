@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use tautline::engine::{Engine, EngineKind, Precision, Reference};
 use tautline::homotopy::Classes;
 use tautline::output::{
-    ResultWriter, StepWriter, class_batches, class_change_batches, event_batches, result_batches, step_batches,
+    Extras, ResultWriter, StepWriter, class_batches, class_change_batches, event_batches, result_batches, step_batches,
     write_events, write_results,
 };
 use tautline::picture::{Drawing, Theme};
-use tautline::rope::{TraceRecord, replay};
+use tautline::rope::{Friction, TraceRecord, replay};
 use tautline::scene::{Centre, Model};
 use tautline::study::Study;
 use tautline::trace::{SettledTrace, Trace, settle_owned};
@@ -52,6 +52,8 @@ pub(crate) struct Kept {
     settled: Option<Vec<SettledTrace>>,
     /// About what turns are counted, step by step; all obstacles with a label unless they were named.
     centres: Option<Vec<Centre>>,
+    /// With which friction the rope's strain is told then, if it is.
+    friction: Option<Friction>,
 }
 
 /// What is asked of an evaluation.
@@ -64,6 +66,8 @@ pub(crate) struct Asked {
     pub(crate) steps: bool,
     /// About what turns are counted then, if obstacles are named.
     pub(crate) centres: Option<Vec<Centre>>,
+    /// And with which friction the rope's strain is told.
+    pub(crate) friction: Option<Friction>,
 }
 
 impl Kept {
@@ -74,7 +78,7 @@ impl Kept {
     }
 
     fn steps(&self) -> Result<Table, Fault> {
-        Ok(Table::of(step_batches(&self.model, self.settled()?, &self.records, &self.centres())))
+        Ok(Table::of(step_batches(&self.model, self.settled()?, &self.records, &self.extras())))
     }
 
     /// What tells the classes of the ropes.
@@ -87,9 +91,17 @@ impl Kept {
         Err(Fault::input(format!("the engine {name} {what}; evaluate with engine=\"cpu\"")))
     }
 
-    fn centres(&self) -> Vec<Centre> {
-        self.centres.clone().unwrap_or_else(|| self.model.scene().labelled())
+    /// What is told of steps beside the ropes.
+    fn extras(&self) -> Extras {
+        let centres = self.centres.clone().unwrap_or_else(|| self.model.scene().labelled());
+        Extras { centres, friction: self.friction }
     }
+}
+
+/// A coefficient of friction, if there is one.
+pub(crate) fn friction_of(coefficient: Option<f64>) -> Result<Option<Friction>, Fault> {
+    let friction = |coefficient| Friction::new(coefficient).map_err(|fault| Fault::input(format!("friction: {fault}")));
+    coefficient.map(friction).transpose()
 }
 
 /// The obstacles with these names.
@@ -129,8 +141,8 @@ impl Ropes {
             rest = &rest[count..];
         }
         let ends = settled.iter().map(|trace| trace.points().last().copied().unwrap_or(model.anchor())).collect();
-        let (settled, centres) = (Some(settled), asked.centres);
-        let mut kept = Kept { model: model.clone(), engine: on, records, ends, settled, centres };
+        let (settled, centres, friction) = (Some(settled), asked.centres, asked.friction);
+        let mut kept = Kept { model: model.clone(), engine: on, records, ends, settled, centres, friction };
         let steps = asked.steps.then(|| kept.steps()).transpose()?;
         let mut results = OnceLock::new();
         if !asked.keep {
@@ -153,7 +165,7 @@ impl Ropes {
         let records = engine.evaluate(std::slice::from_ref(&settled), &work.job)?;
         let ends = vec![settled.points().last().copied().unwrap_or(model.anchor())];
         let (engine, settled) = ("reference (f64) on 1 thread".to_owned(), Some(vec![settled]));
-        Ok(Ropes::new(Kept { model: model.clone(), engine, records, ends, settled, centres: None }))
+        Ok(Ropes::new(Kept { model: model.clone(), engine, records, ends, settled, centres: None, friction: None }))
     }
 
     fn settled(&self) -> Result<&[SettledTrace], Fault> {
@@ -210,12 +222,17 @@ impl Ropes {
         Ok(self.steps.get_or_init(|| table).clone())
     }
 
-    /// The same, made as it is read; turns are counted about other obstacles if they are named.
-    #[pyo3(signature = (about=None))]
-    fn stream_steps(&self, about: Option<Vec<String>>) -> PyResult<StepStream> {
+    /// The same, made as it is read; turns are counted about other obstacles if they are named, and friction may be
+    /// another.
+    #[pyo3(signature = (about=None, friction=None))]
+    fn stream_steps(&self, about: Option<Vec<String>>, friction: Option<f64>) -> PyResult<StepStream> {
         self.settled()?;
-        let centres = about.map_or_else(|| Ok(self.of.centres()), |names| called(&self.of.model, &names))?;
-        Ok(StepStream { of: self.of.clone(), centres })
+        let mut extras = self.of.extras();
+        if let Some(names) = about {
+            extras.centres = called(&self.of.model, &names)?;
+        }
+        extras.friction = friction_of(friction)?.or(extras.friction);
+        Ok(StepStream { of: self.of.clone(), extras })
     }
 
     /// The rope's length after each step: offsets, and all lengths.
@@ -301,7 +318,7 @@ impl Ropes {
             })?;
             events.iter().try_for_each(|path| write_events(path, scene, &self.of.records))?;
             steps.iter().try_for_each(|path| {
-                let mut file = StepWriter::create(path, &self.of.model, &self.of.centres())?;
+                let mut file = StepWriter::create(path, &self.of.model, &self.of.extras())?;
                 file.write_all(settled, &self.of.records)?;
                 Ok(file.finish()?)
             })
@@ -340,6 +357,7 @@ impl Ropes {
                 None => self.results.get().map(Table::ipc).transpose()?,
             },
             centres: self.of.centres.as_ref().map(|all| all.iter().map(|c| (c.name.clone(), c.vertex)).collect()),
+            friction: self.of.friction.map(Friction::coefficient),
             steps: match &self.of.settled {
                 Some(_) => None,
                 None => self.steps.get().map(Table::ipc).transpose()?,
@@ -367,6 +385,7 @@ impl Ropes {
         };
         let (results, steps) = (table(&pickled.results)?, table(&pickled.steps)?);
         let kept = Kept {
+            friction: friction_of(pickled.friction)?,
             engine: pickled.engine,
             records: pickled.records.iter().map(Stored::record).collect(),
             ends: pickled.ends.iter().map(|&end| end.into()).collect(),

@@ -20,7 +20,7 @@ use tautline::trace::{SettledTrace, Trace, ViolationKind, settle_owned};
 
 use crate::compute::{self, Work};
 use crate::fault::Fault;
-use crate::ropes::{Asked, Ropes, called};
+use crate::ropes::{Asked, Ropes, called, friction_of};
 use crate::table::pairs;
 use crate::traces::Traces;
 
@@ -282,9 +282,10 @@ impl Scene {
     }
 
     /// The ropes of all traces. A trace that breaks the rules ends it, or is marked if `flag` says so. With `keep`,
-    /// what happened step by step is kept; with `steps`, the rope after every step is told, and turns about obstacles.
+    /// what happened step by step is kept; with `steps`, the rope after every step is told, and turns about obstacles;
+    /// with `friction`, the strain of the rope too.
     #[allow(clippy::too_many_arguments)] // what the package takes by their names
-    #[pyo3(signature = (traces, engine, precision, flag, keep, steps=false, about=None))]
+    #[pyo3(signature = (traces, engine, precision, flag, keep, steps=false, about=None, friction=None))]
     fn evaluate(
         &self,
         py: Python<'_>,
@@ -295,10 +296,11 @@ impl Scene {
         keep: bool,
         steps: bool,
         about: Option<Vec<String>>,
+        friction: Option<f64>,
     ) -> PyResult<Ropes> {
         let (model, precision) = (self.model()?, self::precision(precision)?);
         let centres = about.map(|names| called(model, &names)).transpose()?;
-        let asked = Asked { flag, keep, steps, centres };
+        let asked = Asked { flag, keep, steps, centres, friction: friction_of(friction)? };
         let kept = self.engine(py, engine, precision)?;
         let traces = traces.take()?;
         compute::locked(py, &kept, |py, kept| {

@@ -8,8 +8,7 @@ use arrow_schema::{ArrowError, SchemaRef};
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 use rayon::ThreadPool;
-use tautline::output::step_batches;
-use tautline::scene::Centre;
+use tautline::output::{Extras, step_batches};
 
 use crate::compute;
 use crate::ropes::Kept;
@@ -22,14 +21,14 @@ const STEPS: usize = 1 << 18;
 #[pyclass(module = "tautrope._tautrope", frozen)]
 pub(crate) struct StepStream {
     pub(crate) of: Arc<Kept>,
-    pub(crate) centres: Vec<Centre>,
+    pub(crate) extras: Extras,
 }
 
 impl StepStream {
     /// The rows of the traces at these places.
     fn rows(&self, places: Range<usize>) -> (SchemaRef, Vec<RecordBatch>) {
         let (records, settled) = (&self.of.records, self.of.settled().unwrap_or_default());
-        step_batches(&self.of.model, &settled[places.clone()], &records[places], &self.centres)
+        step_batches(&self.of.model, &settled[places.clone()], &records[places], &self.extras)
     }
 
     /// The places of the next traces from `first` on, so many that they have enough steps; none at the end.
@@ -54,7 +53,7 @@ impl StepStream {
         requested_schema: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyCapsule>> {
         let _ = requested_schema;
-        let of = StepStream { of: self.of.clone(), centres: self.centres.clone() };
+        let of = StepStream { of: self.of.clone(), extras: self.extras.clone() };
         let (schema, pool) = (self.rows(0..0).0, compute::pool(py)?);
         capsule(py, Reader { of, schema, pool, place: 0, ready: Vec::new() })
     }

@@ -71,6 +71,7 @@ pub(crate) struct Pickled {
     pub(crate) results: Option<Vec<u8>>,
     /// About what turns are counted, if that was said: names and wall ends.
     pub(crate) centres: Option<Vec<(String, u32)>>,
+    pub(crate) friction: Option<f64>,
     /// The table of steps, where it cannot be made any more.
     pub(crate) steps: Option<Vec<u8>>,
 }

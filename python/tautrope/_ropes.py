@@ -129,6 +129,11 @@ class Ropes:
         length), and ``winding_NAME`` for each obstacle of which `Scene.evaluate` was told by ``about``, or else for all
         that have a label: how often the free end has gone all the way round it since the trace began.
 
+        If `Scene.evaluate` was told of ``friction``, there are ``anchor_pull_x`` and ``anchor_pull_y`` (as the rope
+        pulls the anchor), ``turned`` (by which angle it turns in all, in radians), ``tension`` (at the free end when it
+        is hauled, for 1 at the anchor: exp(friction * turned)) and ``work`` (that of the free end since the trace
+        began), before the windings.
+
         The table is in memory: some 70 bytes a step and 8 for each obstacle. `stream_steps` makes it as it is read.
 
         >>> import tautrope
@@ -139,12 +144,15 @@ class Ropes:
         """
         return Table(self._core.steps())
 
-    def stream_steps(self, about: Iterable[str | int] | None = None) -> StepStream:
+    def stream_steps(
+        self, about: Iterable[str | int] | None = None, friction: float | None = None
+    ) -> StepStream:
         """The rows of `steps`, made as they are read: some 250,000 at a time are in memory, and one trace at least.
 
         Args:
             about: Obstacles about which turns are counted, by label or number of a wall end; as for `Scene.evaluate`
                 without it.
+            friction: A coefficient of friction; as for `Scene.evaluate` without it.
 
         >>> import tautrope
         >>> scene = tautrope.Scene.built_in("rooms")
@@ -154,7 +162,7 @@ class Ropes:
         True
         """
         names = names_of(about)
-        return StepStream(self._core.stream_steps(names), (Ropes.stream_steps, (self, names)))
+        return StepStream(self._core.stream_steps(names, friction), (Ropes.stream_steps, (self, names, friction)))
 
     @property
     def columns(self) -> list[str]:
@@ -229,6 +237,31 @@ class Ropes:
             offsets, points = self._core.lines()
             return points[offsets[place] : offsets[place + 1]]
         return self._core.rope_at(place, step)
+
+    def forces(
+        self, trace: int, step: int | None = None, friction: float = 0.0, holds: bool = False
+    ) -> dict[str, np.ndarray[Any, np.dtype[np.float64]]]:
+        """The forces of a rope on what it bends round, for a tension of 1 at the anchor: an array for each column, with
+        an entry for each turn from the anchor on.
+
+        ``x`` and ``y`` say where the rope turns, ``angle`` by which angle in radians, ``before`` and ``beyond`` its
+        tension on the side of the anchor and on that of the free end, ``force_x`` and ``force_y`` the force.
+
+        Args:
+            trace: The trace's number.
+            step: After which step; at the end without it.
+            friction: A coefficient of friction from 0 to 10.
+            holds: Whether the free end only holds, so that the rope is about to slip towards the anchor; otherwise it
+                hauls. Without friction that makes no difference.
+
+        >>> import tautrope
+        >>> scene = tautrope.Scene([[[1, 0], [1, 9]]], anchor=(0, 0))
+        >>> ropes = scene.evaluate([[(0, 0), (1, -1), (2, -1), (2, 1)]])
+        >>> ropes.forces(0)["angle"].round(4), ropes.forces(0, friction=0.5)["beyond"].round(4)
+        (array([0.7854]), array([1.481]))
+        """
+        names = ("x", "y", "angle", "before", "beyond", "force_x", "force_y")
+        return dict(zip(names, _core.forces(self.rope(trace, step), friction, holds), strict=True))
 
     def _place(self, trace: int) -> int:
         numbers = self["trace"]

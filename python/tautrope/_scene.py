@@ -227,6 +227,7 @@ class Scene:
         events: bool = True,
         steps: bool = False,
         about: Iterable[str | int] | None = None,
+        friction: float | None = None,
     ) -> Ropes:
         """The taut ropes of traces: the points through which the free end is dragged.
 
@@ -250,10 +251,12 @@ class Scene:
                 is asked for, and `Ropes.stream_steps` without ever holding all of it.
             about: Of which obstacles `Ropes.steps` counts how often the free end has gone round them: their labels, or
                 numbers of wall ends as in `Scene.vertices`. Without it all obstacles that have a label.
+            friction: A coefficient of friction from 0 to 10, with which `Ropes.steps` tells the rope's pull at the
+                anchor, its turns, its tension and the work of the free end. Without it they are not told.
 
         Raises:
             ViolationError: A step crosses a wall; its fields say which.
-            InputError: Traces that cannot be used, or an obstacle that is not there.
+            InputError: Traces that cannot be used, an obstacle that is not there, or no coefficient of friction.
         """
         if on_violation not in ("error", "flag"):
             raise InputError("on_violation is error or flag")
@@ -261,7 +264,8 @@ class Scene:
             raise InputError("the scene has no anchor; give one: scene.tied((x, y))")
         name = None if engine in (None, "auto") else engine
         names = names_of(about)
-        core = self._core.evaluate(traces_of(traces), name, precision, on_violation == "flag", events, steps, names)
+        flag = on_violation == "flag"
+        core = self._core.evaluate(traces_of(traces), name, precision, flag, events, steps, names, friction)
         return Ropes(core, self)
 
     def check(self, traces: Any) -> list[Violation]:

@@ -93,6 +93,46 @@ def test_steps_are_what_else_is_known_of_them(desks: Scene, dragged: np.ndarray[
     assert np.array_equal(steps["winding_desk"], rounds) and np.abs(rounds).max() >= 1
 
 
+def test_friction_is_the_programs_and_the_formulas(
+    desks: Scene, dragged: np.ndarray[Any, Any], theirs: Path, program: Program, tmp_path: Path
+) -> None:
+    import pyarrow.parquet
+
+    given = "--scene", theirs / "desks.geojson", "--traces", theirs / "walks.parquet"
+    program("eval", *given, "--engine", "cpu", "--steps", tmp_path / "theirs.parquet", "--friction", 0.3)
+    table = pyarrow.parquet.read_table(tmp_path / "theirs.parquet")
+    ropes = desks.evaluate(dragged, engine="cpu", friction=0.3)
+    assert ropes.steps.to_arrow().equals(table)
+    assert ropes.steps.columns[9:14] == ["anchor_pull_x", "anchor_pull_y", "turned", "tension", "work"]
+    ropes.write(steps=tmp_path / "ours.parquet")
+    assert (tmp_path / "ours.parquet").read_bytes() == (tmp_path / "theirs.parquet").read_bytes()
+    for kept in (True, False):
+        some = desks.evaluate(dragged, events=kept, steps=True, friction=0.3)
+        assert some.steps.to_arrow().equals(table)
+        assert pickle.loads(pickle.dumps(some)).steps.to_arrow().equals(table)
+    stream = desks.evaluate(dragged).stream_steps(friction=0.3)
+    for made in (stream, pickle.loads(pickle.dumps(stream))):
+        assert pyarrow.concat_tables([pyarrow.table(part) for part in made]).equals(table)
+    # The formula, and the forces, which add up to the pulls of both ends.
+    steps = {name: column.reshape(200, 151) for name, column in ropes.steps.to_numpy().items()}
+    assert np.allclose(steps["tension"], np.exp(0.3 * steps["turned"]), rtol=1e-15)
+    assert (steps["turned"] > np.pi).any() and ((steps["turned"] > 0) == (steps["turns"] > 0)).all()
+    for trace in (0, 3, 199):
+        for holds in (False, True):
+            forces = ropes.forces(trace, friction=0.3, holds=holds)
+            tension = steps["tension"][trace, -1] ** (-1 if holds else 1)
+            assert len(forces["angle"]) == ropes["depth"][trace]
+            assert np.isclose(forces["angle"].sum(), steps["turned"][trace, -1])
+            for axis in "xy":
+                pulls = steps[f"anchor_pull_{axis}"][trace, -1] + tension * steps[f"pull_{axis}"][trace, -1]
+                assert np.isclose(forces[f"force_{axis}"].sum(), -pulls)
+            assert np.allclose(forces["before"][1:], forces["beyond"][:-1], rtol=1e-13)
+    assert ropes.forces(3, step=20)["x"].tolist() == ropes.rope(3, step=20)[1:-1, 0].tolist()
+    for ask in (lambda: desks.evaluate(dragged, friction=-1), lambda: ropes.forces(0, friction=11)):
+        with pytest.raises(InputError, match="friction: .* is no coefficient of friction; give a number from 0 to 10"):
+            ask()
+
+
 def test_many_steps_come_in_parts(rooms: Scene) -> None:
     ropes = rooms.evaluate(rooms.walks(1500, steps=400))
     parts = [len(part) for part in ropes.stream_steps()]

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use tautline::engine::Job;
+use tautline::output::Extras;
 use tautline::stream::{Account, EndsFiles, EndsSource, EndsStage, Source, evaluate_ends};
 use tautline::trace::TraceReader;
 use tautline::trade::Terms;
@@ -87,8 +88,8 @@ pub(crate) fn run(given: &Given<'_>, traces: TraceReader) -> Result<(), Failure>
     // Without traces there are no ropes, and any place will do.
     let anchor = source.start(AHEAD)?.or(scene.anchor()).unwrap_or_default();
     let model = Arc::new(tie(scene, Some(anchor), &input.name(), &input.how_to_tie())?);
-    let centres = if every.steps.is_some() { every.centres(model.scene())? } else { Vec::new() };
-    let files = EndsFiles { steps: every.steps.as_deref().map(|path| (path, &centres[..])), ..*files };
+    let extras = if every.steps.is_some() { every.extras(model.scene())? } else { Extras::default() };
+    let files = EndsFiles { steps: every.steps.as_deref().map(|path| (path, &extras)), ..*files };
     let (mut engine, on) = engine.open_both_ends(&model)?;
     say!("note: both ends of the ropes move; the anchor told of is where that of the first trace starts");
     let terms = Terms::exact(model.clone());

@@ -31,7 +31,7 @@ pub(crate) struct Args {
     #[arg(
         long, value_name = "FILE", requires = "scene",
         conflicts_with_all = [
-            "traces", "anchor", "events", "steps", "engine", "adapter", "precision", "stride", "simplify",
+            "traces", "anchor", "events", "steps", "forces", "engine", "adapter", "precision", "stride", "simplify",
             "on_violation", "anchor_trace", "class",
         ]
     )]
@@ -46,6 +46,10 @@ pub(crate) struct Args {
     /// about each of them
     #[arg(long, requires = "out")]
     class: bool,
+    /// Where to write the forces of the ropes at the end on what they bend round, one row a turn: .jsonl, .csv or
+    /// .parquet; without friction unless --friction says how much
+    #[arg(long, value_name = "FILE")]
+    forces: Option<PathBuf>,
     #[command(flatten)]
     ends: EndsArgs,
     #[command(flatten)]
@@ -88,7 +92,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut account = Account::new(&args.input.name(), &terms, &*engine, on);
     let files = Files::new(args.out.as_deref(), args.events.as_deref(), model, notes(&terms, &*engine));
     let files = match &args.every.steps {
-        Some(path) => files.with_steps(path, args.every.centres(model.scene())?),
+        Some(path) => files.with_steps(path, args.every.extras(model.scene())?),
+        None => files,
+    };
+    let files = match &args.forces {
+        Some(path) => files.with_forces(path, args.every.friction.unwrap_or_default()),
         None => files,
     };
     let files = if args.class { files.with_classes(classes(&*engine, model)?) } else { files };
@@ -110,7 +118,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 impl Args {
     /// The same where both ends of ropes move.
     fn of_ends(&self) -> Given<'_> {
-        let files = EndsFiles { out: self.out.as_deref(), events: self.events.as_deref(), steps: None };
+        let [out, events] = [&self.out, &self.events].map(Option::as_deref);
+        let forces = self.forces.as_deref().map(|path| (path, self.every.friction.unwrap_or_default()));
+        let files = EndsFiles { out, events, steps: None, forces };
         let others = [("--stride", self.trade.stride.is_some()), ("--simplify", self.trade.simplify.is_some())];
         let Args { input, ends, engine, every, json, .. } = self;
         Given { input, ends, engine, every, files, others, json: *json }
@@ -136,11 +146,14 @@ fn notes(terms: &Terms, engine: &dyn Engine) -> Vec<(&'static str, String)> {
 
 /// Refuses outputs that cannot be written, and those that would replace another file of this run.
 fn check_outputs(args: &Args) -> Result<(), Failure> {
-    let outputs = [&args.out, &args.events, &args.every.steps];
+    let outputs = [&args.out, &args.events, &args.every.steps, &args.forces];
     outputs.into_iter().flatten().try_for_each(|path| check_output(path))?;
-    let [out, events, steps] = outputs.map(Option::as_deref);
+    if outputs[2].is_none() && outputs[3].is_none() && args.every.friction.is_some() {
+        return Err(Failure::input(anyhow!("--friction: say with --steps or --forces where to write what it makes")));
+    }
+    let [out, events, steps, forces] = outputs.map(Option::as_deref);
     let [scene, traces] = args.input.named();
     let paths = args.ends.anchor_trace.as_deref();
     let inputs = [scene, traces, ("--queries", args.queries.as_deref()), ("--anchor-trace", paths)];
-    keep_apart(&inputs, &[("--out", out), ("--events", events), ("--steps", steps)])
+    keep_apart(&inputs, &[("--out", out), ("--events", events), ("--steps", steps), ("--forces", forces)])
 }

@@ -6,6 +6,7 @@ use arrow_array::RecordBatch;
 use arrow_schema::{Schema, SchemaRef};
 use rayon::prelude::*;
 
+use super::Extras;
 use super::class_columns::{ChangeRows, ClassRows, shown};
 use super::columns::{EventColumns, ResultColumns};
 use super::events::row;
@@ -14,7 +15,7 @@ use super::step_arrays::StepArrays;
 use super::tables::Columns;
 use crate::homotopy::Classes;
 use crate::rope::{StepColumns, Steps, TraceRecord};
-use crate::scene::{Centre, Model, Scene};
+use crate::scene::{Model, Scene};
 use crate::trace::SettledTrace;
 
 /// How many rows or list elements a batch has, about: offsets of lists are numbers of 32 bits.
@@ -118,8 +119,8 @@ pub fn class_change_batches(
 }
 
 /// The rope after every step of traces as tables in memory: the columns, and the rows in batches of whole traces, none
-/// if there are no traces. They are those of a [`StepWriter`](super::StepWriter) of a Parquet file. Turns are counted
-/// about each of `centres`. O(points and events), on all threads.
+/// if there are no traces. They are those of a [`StepWriter`](super::StepWriter) of a Parquet file. `extras`
+/// says what is told beside the ropes. O(points and events), on all threads.
 ///
 /// # Panics
 ///
@@ -128,7 +129,7 @@ pub fn step_batches(
     model: &Model,
     traces: &[SettledTrace],
     records: &[TraceRecord],
-    centres: &[Centre],
+    extras: &Extras,
 ) -> (SchemaRef, Vec<RecordBatch>) {
     let mut parts = Vec::new();
     let (mut first, mut rows) = (0, 0);
@@ -140,13 +141,14 @@ pub fn step_batches(
         }
     }
     let part = |part: std::ops::Range<usize>| {
-        let mut columns = StepColumns::new(centres.len());
+        let mut columns = StepColumns::new(extras.centres.len());
         for (trace, record) in traces[part.clone()].iter().zip(&records[part]) {
-            columns.take(record.trace, &mut Steps::new(model, trace, record, centres), usize::MAX);
+            let steps = Steps::new(model, trace, record, &extras.centres);
+            columns.take(record.trace, &mut steps.with_friction(extras.friction), usize::MAX);
         }
-        whole(StepArrays::of(columns, centres, false)).1
+        whole(StepArrays::of(columns, extras, false)).1
     };
-    let (schema, _) = whole(StepArrays::new(centres, false));
+    let (schema, _) = whole(StepArrays::new(extras, false));
     (schema, parts.into_par_iter().flat_map_iter(part).collect())
 }
 
@@ -188,6 +190,7 @@ mod tests {
     use crate::engine::{Cpu, Engine, Job};
     use crate::example::{Walker, floor_plan, settled_walks};
     use crate::output::{StepWriter, write_events, write_results};
+    use crate::rope::Friction;
     use crate::scene::{Model, Object, Wall};
 
     /// Holds the rows in memory to those of the file that `write` writes.
@@ -216,15 +219,17 @@ mod tests {
             let scene = model.scene();
             compare(result_batches(scene, &records), |file| write_results(file, scene, &records).unwrap());
             compare(event_batches(scene, &records), |file| write_events(file, scene, &records).unwrap());
-            let centres = scene.labelled();
-            compare(step_batches(&model, &walks, &records, &centres), |file| {
-                let mut steps = StepWriter::create(file, &model, &centres).unwrap();
-                steps.write_all(&walks, &records).unwrap();
-                steps.finish().unwrap();
-            });
+            for friction in [None, Some(Friction::new(0.3).unwrap())] {
+                let extras = Extras { centres: scene.labelled(), friction };
+                compare(step_batches(&model, &walks, &records, &extras), |file| {
+                    let mut steps = StepWriter::create(file, &model, &extras).unwrap();
+                    steps.write_all(&walks, &records).unwrap();
+                    steps.finish().unwrap();
+                });
+            }
         }
         let model = Model::new(floor_plan(), None).unwrap();
-        assert!(step_batches(&model, &[], &[], &[]).1.is_empty());
+        assert!(step_batches(&model, &[], &[], &Extras::default()).1.is_empty());
         let (schema, none) = result_batches(&floor_plan(), &[]);
         assert_eq!((schema.fields().len(), none), (11, Vec::new()));
     }

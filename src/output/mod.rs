@@ -9,6 +9,8 @@ mod batches;
 mod class_columns;
 mod columns;
 mod events;
+mod extras;
+mod forces;
 mod labels;
 mod merge;
 mod passing;
@@ -31,6 +33,8 @@ use std::path::Path;
 
 pub use batches::{class_batches, class_change_batches, event_batches, result_batches, step_batches};
 pub use events::{EventWriter, write_events};
+pub use extras::Extras;
+pub use forces::ForceWriter;
 pub use merge::merge_results;
 pub use passing::{abandon, commit, remove_left_files};
 pub use points::PointWriter;

@@ -8,10 +8,10 @@ use arrow_schema::{DataType, Field};
 use parquet::basic::Encoding;
 use parquet::file::properties::WriterPropertiesBuilder;
 
-use super::step_text::winding;
+use super::Extras;
+use super::step_text::{STRAIN, strain, winding};
 use super::tables::Columns;
 use crate::rope::StepColumns;
-use crate::scene::Centre;
 
 /// How many rows a row group has: few groups, since the footer, which is held until the end, grows with them.
 const GROUP: usize = 1 << 20;
@@ -22,15 +22,18 @@ pub(super) struct StepArrays {
     windings: Vec<String>,
     /// Whether the anchor moves.
     both_move: bool,
+    /// Whether there is friction.
+    strained: bool,
 }
 
 impl StepArrays {
-    pub(super) fn new(centres: &[Centre], both_move: bool) -> Self {
-        StepArrays::of(StepColumns::new(centres.len()), centres, both_move)
+    pub(super) fn new(extras: &Extras, both_move: bool) -> Self {
+        StepArrays::of(StepColumns::new(extras.centres.len()), extras, both_move)
     }
 
-    pub(super) fn of(columns: StepColumns, centres: &[Centre], both_move: bool) -> Self {
-        StepArrays { columns, windings: centres.iter().map(winding).collect(), both_move }
+    pub(super) fn of(columns: StepColumns, extras: &Extras, both_move: bool) -> Self {
+        let windings = extras.centres.iter().map(winding).collect();
+        StepArrays { columns, windings, both_move, strained: extras.friction.is_some() }
     }
 }
 
@@ -46,7 +49,9 @@ impl Columns for StepArrays {
             ("pull_y", DataType::Float64, true),
         ];
         let places = places.map(|name| (name, DataType::Float64, false));
-        let fields = numbers.into_iter().chain(places).chain(fields);
+        let strain = STRAIN.iter().filter(|_| self.strained);
+        let strain = strain.map(|name| (*name, DataType::Float64, name.starts_with("anchor_pull")));
+        let fields = numbers.into_iter().chain(places).chain(fields).chain(strain);
         let fields = fields.map(|(name, of, nullable)| Field::new(name, of, nullable));
         fields.chain(self.windings.iter().map(|name| Field::new(name, DataType::Int64, false))).collect()
     }
@@ -69,16 +74,22 @@ impl Columns for StepArrays {
             Arc::new(UInt32Array::from(c.contacts)),
             Arc::new(UInt32Array::from(c.turns)),
             Arc::new(Float64Array::new(c.pull_x.into(), pulls.clone())),
-            Arc::new(Float64Array::new(c.pull_y.into(), pulls)),
+            Arc::new(Float64Array::new(c.pull_y.into(), pulls.clone())),
         ];
+        // The pull of the anchor is null where that of the free end is.
+        let strain =
+            strain(c.strain).into_iter().filter(|_| self.strained).enumerate().map(|(i, column)| {
+                Arc::new(Float64Array::new(column.into(), pulls.clone().filter(|_| i < 2))) as ArrayRef
+            });
         let windings = c.windings.into_iter().map(|windings| Arc::new(Int64Array::from(windings)) as ArrayRef);
-        columns.into_iter().chain(rest).chain(windings).collect()
+        columns.into_iter().chain(rest).chain(strain).chain(windings).collect()
     }
 
     /// Numbers of steps grow by one, and hardly a float is there twice: dictionaries of them are work for nothing.
     fn properties(&self, builder: WriterPropertiesBuilder) -> WriterPropertiesBuilder {
         let builder = ["x", "y", "bx", "by", "length", "pull_x", "pull_y"]
             .into_iter()
+            .chain(STRAIN)
             .fold(builder, |builder, name| builder.set_column_dictionary_enabled(name.into(), false));
         builder
             .set_column_dictionary_enabled("step".into(), false)

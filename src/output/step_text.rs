@@ -2,12 +2,31 @@
 
 use std::io::{self, Write};
 
+use super::Extras;
 use super::labels::field;
 use super::text::number;
-use crate::rope::StepColumns;
+use crate::rope::{StepColumns, StrainColumns};
 use crate::scene::Centre;
 
 const HEADER: [&str; 2] = ["trace,step,x,y", ",length,contacts,turns,pull_x,pull_y"];
+
+/// What the columns are called that friction brings, and what they hold.
+pub(super) const STRAIN: [&str; 5] = ["anchor_pull_x", "anchor_pull_y", "turned", "tension", "work"];
+
+/// The columns that friction brings.
+pub(super) fn strain(columns: StrainColumns) -> [Vec<f64>; STRAIN.len()] {
+    let StrainColumns { anchor_pull_x, anchor_pull_y, turned, tension, work } = columns;
+    [anchor_pull_x, anchor_pull_y, turned, tension, work]
+}
+
+/// The numbers of a row that friction brings, none where there is none: a pull only where the rope has one.
+fn strained(c: &StepColumns, row: usize) -> impl Iterator<Item = (&'static str, Option<f64>)> {
+    let StrainColumns { anchor_pull_x, anchor_pull_y, turned, tension, work } = &c.strain;
+    let pulls = [anchor_pull_x, anchor_pull_y].map(|pull| pull.get(row).map(|&x| c.pulls[row].then_some(x)));
+    let others = [turned, tension, work].map(|column| column.get(row).map(|&x| Some(x)));
+    let all = pulls.into_iter().chain(others).flatten();
+    STRAIN.into_iter().zip(all)
+}
 
 /// What the column of windings about a centre is called.
 pub(super) fn winding(centre: &Centre) -> String {
@@ -15,9 +34,13 @@ pub(super) fn winding(centre: &Centre) -> String {
 }
 
 /// The first line of CSV, with where the anchor is if it moves.
-pub(super) fn header(centres: &[Centre], both_move: bool) -> String {
+pub(super) fn header(extras: &Extras, both_move: bool) -> String {
     let mut line = HEADER.join(if both_move { ",bx,by" } else { "" }).into_bytes();
-    for centre in centres {
+    for name in STRAIN.iter().filter(|_| extras.friction.is_some()) {
+        line.push(b',');
+        line.extend_from_slice(name.as_bytes());
+    }
+    for centre in &extras.centres {
         line.push(b',');
         field(&mut line, &winding(centre)).expect("memory takes all");
     }
@@ -37,6 +60,15 @@ pub(super) fn csv(out: &mut Vec<u8>, columns: &StepColumns, row: usize) -> io::R
         out.push(b',');
         if c.pulls[row] {
             number(out, pull)?;
+        }
+    }
+    for (_, x) in strained(c, row) {
+        out.push(b',');
+        match x {
+            Some(x) if x.is_finite() => number(out, x)?,
+            // What CSV has no digits for: readers know it by this name.
+            Some(_) => out.extend_from_slice(b"inf"),
+            None => {}
         }
     }
     c.windings.iter().try_for_each(|windings| write!(out, ",{}", windings[row]))?;
@@ -59,6 +91,14 @@ pub(super) fn json(out: &mut Vec<u8>, columns: &StepColumns, row: usize, centres
         match c.pulls[row] {
             true => number(out, pull)?,
             false => out.extend_from_slice(b"null"),
+        }
+    }
+    for (name, x) in strained(c, row) {
+        write!(out, ",\"{name}\":")?;
+        match x.filter(|x| x.is_finite()) {
+            Some(x) => number(out, x)?,
+            // JSON has no infinity either.
+            None => out.extend_from_slice(b"null"),
         }
     }
     for (centre, windings) in centres.iter().zip(&c.windings) {

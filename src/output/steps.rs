@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use super::rows::Rows;
 use super::step_arrays::StepArrays;
-use super::{WholeFile, WriteError, step_text};
+use super::{Extras, WholeFile, WriteError, step_text};
 use crate::rope::{EndsRecord, EndsSteps, StepColumns, Steps, TraceRecord};
-use crate::scene::{Centre, Model};
+use crate::scene::Model;
 use crate::trace::{SettledEnds, SettledTrace};
 
 /// How many rows are held before they are written: the bound on memory.
@@ -18,26 +18,27 @@ const ROWS: usize = 1 << 16;
 ///
 /// `.jsonl`, `.csv` and `.parquet` have the same columns: `trace`, `step`, `x`, `y`, `length`, `contacts`, `turns`,
 /// `pull_x`, `pull_y` (both null, in `.csv` empty, for a rope of no length), and for each centre `winding_NAME`: what
-/// [`RopeStep`](crate::rope::RopeStep) and [`Steps::windings`] say. Rows come out of one replay of each trace's events
-/// and are written as they come: memory grows neither with the number of traces nor with their steps, but for what
-/// Parquet's footer says of each million of rows.
+/// [`RopeStep`](crate::rope::RopeStep) and [`Steps::windings`] say. Where friction is asked for `anchor_pull_x`,
+/// `anchor_pull_y`, `turned`, `tension` and `work`, what [`Strain`](crate::rope::Strain) says, follow `pull_y`. Rows
+/// come out of one replay of each trace's events and are written as they come: memory grows neither with the number of
+/// traces nor with their steps, but for what Parquet's footer says of each million of rows.
 pub struct StepWriter {
     rows: Rows<StepArrays>,
     columns: StepColumns,
     model: Arc<Model>,
-    centres: Vec<Centre>,
+    extras: Extras,
     both_move: bool,
 }
 
 impl StepWriter {
-    /// Starts the file at `path`, in the format that its extension names, for ropes in `model`; turns are counted about
-    /// each of `centres`, of which no two have the same name.
+    /// Starts the file at `path`, in the format that its extension names, for ropes in `model`; `extras` says what
+    /// is told beside them.
     ///
     /// # Errors
     ///
     /// Those of [`check_output`](super::check_output).
-    pub fn create(path: &Path, model: &Arc<Model>, centres: &[Centre]) -> Result<Self, WriteError> {
-        Self::with(path, model, centres, false)
+    pub fn create(path: &Path, model: &Arc<Model>, extras: &Extras) -> Result<Self, WriteError> {
+        Self::with(path, model, extras, false)
     }
 
     /// The same for ropes whose ends both move: columns `bx` and `by`, where the anchor is, follow `y`, and
@@ -46,15 +47,15 @@ impl StepWriter {
     /// # Errors
     ///
     /// Those of [`check_output`](super::check_output).
-    pub fn of_ends(path: &Path, model: &Arc<Model>, centres: &[Centre]) -> Result<Self, WriteError> {
-        Self::with(path, model, centres, true)
+    pub fn of_ends(path: &Path, model: &Arc<Model>, extras: &Extras) -> Result<Self, WriteError> {
+        Self::with(path, model, extras, true)
     }
 
-    fn with(path: &Path, model: &Arc<Model>, centres: &[Centre], both_move: bool) -> Result<Self, WriteError> {
-        let header = step_text::header(centres, both_move);
-        let rows = Rows::create(path, &header, StepArrays::new(centres, both_move))?;
-        let columns = StepColumns::new(centres.len());
-        Ok(StepWriter { rows, columns, model: model.clone(), centres: centres.to_vec(), both_move })
+    fn with(path: &Path, model: &Arc<Model>, extras: &Extras, both_move: bool) -> Result<Self, WriteError> {
+        let header = step_text::header(extras, both_move);
+        let rows = Rows::create(path, &header, StepArrays::new(extras, both_move))?;
+        let columns = StepColumns::new(extras.centres.len());
+        Ok(StepWriter { rows, columns, model: model.clone(), extras: extras.clone(), both_move })
     }
 
     /// Adds the steps of traces of ropes whose ends both move, each with what became of it, to a file
@@ -70,7 +71,8 @@ impl StepWriter {
     pub fn write_ends(&mut self, traces: &[SettledEnds], records: &[EndsRecord]) -> Result<(), WriteError> {
         let model = self.model.clone();
         traces.iter().zip(records).try_for_each(|(trace, record)| {
-            let mut steps = EndsSteps::new(&model, trace, record, &self.centres);
+            let steps = EndsSteps::new(&model, trace, record, &self.extras.centres);
+            let mut steps = steps.with_friction(self.extras.friction);
             while !self.columns.take_ends(record.record.trace, &mut steps, ROWS) {
                 self.flush()?;
             }
@@ -102,7 +104,8 @@ impl StepWriter {
     ///
     /// As [`write_all`](Self::write_all).
     pub fn write_tied(&mut self, model: &Model, trace: &SettledTrace, record: &TraceRecord) -> Result<(), WriteError> {
-        let mut steps = Steps::new(model, trace, record, &self.centres);
+        let steps = Steps::new(model, trace, record, &self.extras.centres);
+        let mut steps = steps.with_friction(self.extras.friction);
         while !self.columns.take(record.trace, &mut steps, ROWS) {
             self.flush()?;
         }
@@ -138,15 +141,15 @@ impl StepWriter {
     /// Writes the rows that are held.
     fn flush(&mut self) -> Result<(), WriteError> {
         let columns = take(&mut self.columns);
-        self.columns = StepColumns::new(self.centres.len());
-        let centres = &self.centres;
+        self.columns = StepColumns::new(self.extras.centres.len());
+        let extras = &self.extras;
         match &mut self.rows {
-            Rows::Parquet(table) => table.write_columns(StepArrays::of(columns, centres, self.both_move)),
+            Rows::Parquet(table) => table.write_columns(StepArrays::of(columns, extras, self.both_move)),
             text => {
                 let rows: Vec<usize> = (0..columns.len()).collect();
                 text.write_all(
                     &rows,
-                    |text, &row| step_text::json(text, &columns, row, centres),
+                    |text, &row| step_text::json(text, &columns, row, &extras.centres),
                     |text, &row| step_text::csv(text, &columns, row),
                     |_, _| Ok(()),
                 )

@@ -101,6 +101,13 @@ fn facts(summary: &Summary) -> String {
             ("first step held back, on average where one was", first),
         ]
     });
+    let friction = summary.friction.iter().flat_map(|friction| {
+        [
+            ("coefficient of friction", number(friction.coefficient, None)),
+            ("greatest tension, for 1 at the anchor", estimate(&friction.tension.mean)),
+            ("work of the free end", estimate(&friction.work.mean)),
+        ]
+    });
     let visited = summary.map.as_ref().and_then(|map| map.visited).map(|visited| {
         (
             "area visited, in whole cells",
@@ -108,7 +115,7 @@ fn facts(summary: &Summary) -> String {
         )
     });
     let mut out = String::from("<dl>\n");
-    for (name, value) in facts.into_iter().chain(tether).chain(visited).chain(traded) {
+    for (name, value) in facts.into_iter().chain(tether).chain(friction).chain(visited).chain(traded) {
         let _ = writeln!(out, "<div><dt>{name}</dt><dd>{}</dd></div>", escape(&value));
     }
     out.push_str("</dl>\n");

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::{EndsRecord, FreeRope, RopeStep, Rounds};
+use super::ends_strain::EndsStraining;
+use super::{EndsRecord, FreeRope, Friction, RopeStep, Rounds, Strain};
 use crate::scene::{Centre, Model};
 use crate::trace::{End, SettledEnds};
 
@@ -23,6 +24,8 @@ pub struct EndsSteps<'a> {
     happened: usize,
     rounds: Vec<Rounds>,
     y_down: bool,
+    /// Where friction is asked for.
+    straining: Option<EndsStraining>,
     /// The settled point to which the free end goes next.
     point: usize,
     next: usize,
@@ -41,7 +44,20 @@ impl<'a> EndsSteps<'a> {
         let rounds = centres.iter().map(|centre| Rounds::about(vertices[centre.vertex as usize])).collect();
         let [free, anchor] = [End::Free, End::Anchor].map(|end| trace.path(end).ends());
         let (rope, y_down) = (FreeRope::new(trace.start().into()), model.scene().y_down());
-        EndsSteps { trace, record, vertices, free, anchor, rope, happened: 0, rounds, y_down, point: 0, next: 0 }
+        let (happened, straining, point, next) = (0, None, 0, 0);
+        EndsSteps { trace, record, vertices, free, anchor, rope, happened, rounds, y_down, straining, point, next }
+    }
+
+    /// As [`Steps::with_friction`](super::Steps::with_friction).
+    #[must_use]
+    pub fn with_friction(mut self, friction: Option<Friction>) -> Self {
+        self.straining = friction.map(EndsStraining::new);
+        self
+    }
+
+    /// As [`Steps::strain`](super::Steps::strain). Work is that of the free end, while the anchor rests. O(contacts).
+    pub fn strain(&self) -> Option<Strain> {
+        self.straining.as_ref().map(|straining| straining.look(&self.rope))
     }
 
     /// The rope after the next step, and where the anchor is then; `None` after the last.
@@ -49,9 +65,22 @@ impl<'a> EndsSteps<'a> {
     pub fn next(&mut self) -> Option<(RopeStep, DVec2)> {
         let step = self.next;
         let (at, anchor) = (*self.free.get(step)?, self.anchor[step]);
+        let mut part = self.straining.as_ref().map(|straining| straining.begin(&self.rope, at));
         while let Some(event) = self.record.record.events.get(self.happened).filter(|e| e.step as usize <= step) {
-            self.rope.play(self.record.ends[self.happened], event, self.vertices[event.vertex as usize]);
+            let (end, vertex) = (self.record.ends[self.happened], self.vertices[event.vertex as usize]);
+            match (&mut self.straining, end) {
+                (Some(straining), End::Free) => {
+                    part.iter_mut().for_each(|part| straining.go_on(&self.rope, part, event.kind, vertex));
+                }
+                // By now the free end has come to the end of its step.
+                (Some(straining), End::Anchor) => part.take().iter().for_each(|part| straining.end(&self.rope, part)),
+                (None, _) => {}
+            }
+            self.rope.play(end, event, vertex);
             self.happened += 1;
+        }
+        if let (Some(straining), Some(part)) = (&mut self.straining, part) {
+            straining.end(&self.rope, &part);
         }
         self.rope.stand(End::Free, at);
         self.rope.stand(End::Anchor, anchor);

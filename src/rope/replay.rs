@@ -31,6 +31,21 @@ impl<'a> Replay<'a> {
         self.next().filter(|event| event.step as usize <= step)
     }
 
+    /// Where the vertex of an event stands.
+    pub(super) fn place(&self, event: &Event) -> DVec2 {
+        self.vertices[event.vertex as usize]
+    }
+
+    /// Which share of a step from one of `ends` to the other has been made when `event` happens to the rope, of which
+    /// `before` had been made when the one before it did.
+    pub(super) fn share(&self, rope: &Rope, event: &Event, ends: [DVec2; 2], before: f64) -> f64 {
+        let line = match event.kind {
+            EventKind::Wrap => [rope.pivot(), self.place(event)],
+            EventKind::Unwrap => [rope.prior(), rope.pivot()],
+        };
+        share_at(line, ends, before)
+    }
+
     /// Makes the next event happen to the rope.
     pub(super) fn play(&mut self, rope: &mut Rope) {
         let event = &self.events[self.happened];
@@ -86,13 +101,7 @@ pub fn moments(anchor: DVec2, vertices: &[DVec2], points: &[DVec2], events: &[Ev
         moment.step = k;
         moment.share = 0.0;
         while let Some(event) = replay.due(k) {
-            let rope = &moment.rope;
-            let line = match event.kind {
-                EventKind::Wrap => [rope.pivot(), vertices[event.vertex as usize]],
-                EventKind::Unwrap => [rope.prior(), rope.pivot()],
-            };
-            // Rounding must not turn the order round.
-            moment.share = crossing(line, [from, to]).unwrap_or(moment.share).clamp(moment.share, 1.0);
+            moment.share = replay.share(&moment.rope, event, [from, to], moment.share);
             moment.at = from.lerp(to, moment.share);
             moment.event = Some(replay.happened);
             replay.play(&mut moment.rope);
@@ -102,6 +111,30 @@ pub fn moments(anchor: DVec2, vertices: &[DVec2], points: &[DVec2], events: &[Ev
         each(&moment);
         from = to;
     }
+}
+
+/// Which share of a step between `ends` has been made where something happens to the rope that lies along a line, at
+/// the second of its points, after `before` of it: where the step meets the line.
+///
+/// A step along the line, but for roundings, meets it nowhere or anywhere. What happens does so beyond that second
+/// point, where the rope is as long with that contact as without it.
+pub(super) fn share_at(line: [DVec2; 2], ends: [DVec2; 2], before: f64) -> f64 {
+    let size = line.iter().chain(&ends).map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    let along = line[1] - line[0];
+    let is_on_it = |end: &DVec2| along.perp_dot(*end - line[0]).abs() <= ROUNDED * size * along.length();
+    let share = if ends.iter().all(is_on_it) { passing(line, ends) } else { crossing(line, ends) };
+    // Rounding must not turn the order round.
+    share.unwrap_or(before).clamp(before, 1.0)
+}
+
+/// By how much of the greatest coordinate roundings can put a point off a line: some units in the last place.
+const ROUNDED: f64 = 16.0 * f64::EPSILON;
+
+/// Which share of the way from `a` to `b`, along the line from `o` through `p`, has been made where it comes beyond
+/// `p`; `None` where it goes the other way.
+fn passing([o, p]: [DVec2; 2], [a, b]: [DVec2; 2]) -> Option<f64> {
+    let (along, way) = (p - o, b - a);
+    (way.dot(along) > 0.0).then(|| (p - a).dot(along) / way.dot(along))
 }
 
 /// Which share of the way from `a` to `b` has been made where it meets the line through `o` and `p`, if it meets it
@@ -218,6 +251,24 @@ mod tests {
             all_events += events;
         }
         assert!(all_events > 50, "{all_events}");
+    }
+
+    /// Steps along the line of a leg, but for roundings, which put the ends on this side of it or that.
+    #[test]
+    fn a_step_along_a_leg_meets_its_end_where_the_rope_has_one_length() {
+        let mut apart = 0;
+        for i in 1..2000 {
+            let along = DVec2::from_angle(f64::from(i));
+            let origin = DVec2::new(f64::from(i % 7) / 3.0, f64::from(i % 5) / 7.0);
+            let on = |far: f64| origin + along * far;
+            let (line, [near, far]) = ([on(0.0), on(1.0)], [on(0.3), on(1.9)]);
+            for (ends, least, most) in [([near, far], 0.7 / 1.6, 0.7 / 1.6), ([far, near], 0.0, 0.9 / 1.6)] {
+                let share = share_at(line, ends, 0.0);
+                assert!(share > least - 1e-9 && share < most + 1e-9, "{i}: {share}");
+                apart += u32::from(crossing(line, ends).is_some_and(|s| s < least - 0.1 || s > most + 0.1));
+            }
+        }
+        assert!(apart > 100, "{apart}");
     }
 
     #[test]

@@ -176,6 +176,11 @@ impl Rope {
         self.contacts.clear();
     }
 
+    /// Where it is tied.
+    pub(super) fn anchor(&self) -> DVec2 {
+        self.anchor
+    }
+
     /// All contacts from the anchor on, those passed straight included.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts

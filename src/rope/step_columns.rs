@@ -1,6 +1,6 @@
 //! Ropes after steps, column by column.
 
-use super::{EndsSteps, RopeStep, Steps};
+use super::{EndsSteps, RopeStep, Steps, Strain};
 
 /// Ropes after steps as columns, one entry a step: all of the same length but `windings`, which has such a column for
 /// each centre, and `bx` and `by`, which are empty where the anchor does not move. What is [`RopeStep`]'s, in the
@@ -52,8 +52,36 @@ pub struct StepColumns {
     pub pull_y: Vec<f64>,
     /// Whether the rope has a length, so that it pulls.
     pub pulls: Vec<bool>,
+    /// Where friction is asked for, else empty: what [`Strain`] says.
+    pub strain: StrainColumns,
     /// For each centre: how often the free end has gone all the way round.
     pub windings: Vec<Vec<i64>>,
+}
+
+/// What [`Strain`] says after steps, as columns.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StrainColumns {
+    /// The unit vector of the rope's pull on the anchor; 0 for a rope of no length.
+    pub anchor_pull_x: Vec<f64>,
+    /// And upwards.
+    pub anchor_pull_y: Vec<f64>,
+    /// By which angle the rope turns in all.
+    pub turned: Vec<f64>,
+    /// The tension at the free end when it is hauled.
+    pub tension: Vec<f64>,
+    /// The work of the free end.
+    pub work: Vec<f64>,
+}
+
+impl StrainColumns {
+    fn push(&mut self, strain: &Strain) {
+        let pull = strain.anchor_pull.unwrap_or_default();
+        self.anchor_pull_x.push(pull.x);
+        self.anchor_pull_y.push(pull.y);
+        self.turned.push(strain.turned);
+        self.tension.push(strain.tension);
+        self.work.push(strain.work);
+    }
 }
 
 impl StepColumns {
@@ -81,7 +109,7 @@ impl StepColumns {
     pub fn take(&mut self, trace: u64, steps: &mut Steps<'_>, most: usize) -> bool {
         while self.len() < most {
             let Some(step) = steps.next() else { return true };
-            self.push(trace, &step, steps.windings());
+            self.push(trace, &step, steps.strain(), steps.windings());
         }
         false
     }
@@ -96,12 +124,12 @@ impl StepColumns {
             let Some((step, anchor)) = steps.next() else { return true };
             self.bx.push(anchor.x);
             self.by.push(anchor.y);
-            self.push(trace, &step, steps.windings());
+            self.push(trace, &step, steps.strain(), steps.windings());
         }
         false
     }
 
-    fn push(&mut self, trace: u64, step: &RopeStep, windings: impl Iterator<Item = i64>) {
+    fn push(&mut self, trace: u64, step: &RopeStep, strain: Option<Strain>, windings: impl Iterator<Item = i64>) {
         let pull = step.pull.unwrap_or_default();
         self.trace.push(trace);
         self.step.push(step.step);
@@ -113,6 +141,7 @@ impl StepColumns {
         self.pull_x.push(pull.x);
         self.pull_y.push(pull.y);
         self.pulls.push(step.pull.is_some());
+        strain.iter().for_each(|strain| self.strain.push(strain));
         let mut columns = self.windings.iter_mut();
         for rounds in windings {
             columns.next().expect("a column for each centre").push(rounds);

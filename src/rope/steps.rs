@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use super::replay::Replay;
 use super::stack::LastLeg;
-use super::{Rope, Rounds, TraceRecord};
+use super::strain::Straining;
+use super::{Friction, Rope, Rounds, Strain, TraceRecord};
 use crate::scene::{Centre, Model};
 use crate::trace::SettledTrace;
 
@@ -59,6 +60,8 @@ pub struct Steps<'a> {
     leg: LastLeg,
     rounds: Vec<Rounds>,
     y_down: bool,
+    /// Where friction is asked for.
+    straining: Option<Straining>,
     /// The settled point to which the free end goes next.
     point: usize,
     /// Where it was after the last step that was walked, and the next step that is walked.
@@ -81,9 +84,17 @@ impl<'a> Steps<'a> {
         let replay = Replay::new(model.vertices(), &record.events);
         let y_down = model.scene().y_down();
         let (leg, at) = (rope.last_leg(), model.anchor());
-        let mut steps = Steps { trace, replay, rope, leg, rounds, y_down, point: 0, at, walked: 0, next: 0 };
+        let straining = None;
+        let mut steps = Steps { trace, replay, rope, leg, rounds, y_down, straining, point: 0, at, walked: 0, next: 0 };
         steps.look_ahead();
         steps
+    }
+
+    /// The same with the [`strain`](Self::strain) of the rope, if there is friction. To be asked before the first step.
+    #[must_use]
+    pub fn with_friction(mut self, friction: Option<Friction>) -> Self {
+        self.straining = friction.map(Straining::new);
+        self
     }
 
     /// The rope after the next step; `None` after the last. O(1) but for events, and for points that were added within
@@ -111,10 +122,22 @@ impl<'a> Steps<'a> {
         self.rounds.iter().map(|rounds| if self.y_down { -rounds.whole() } else { rounds.whole() })
     }
 
+    /// What friction makes of the rope after the step that was told last; `None` where it was not
+    /// [asked for](Self::with_friction). O(1).
+    pub fn strain(&self) -> Option<Strain> {
+        self.straining.as_ref().map(|straining| straining.look(&self.rope, self.at))
+    }
+
     /// Walks to the end of the next step that has not been left out.
     fn walk(&mut self) {
         let step = self.walked;
         let mut happened = false;
+        if let Some(straining) = &mut self.straining {
+            let ends_step = |&point: &usize| self.trace.ends_step(point);
+            let end = (self.point..self.trace.points().len()).find(ends_step).expect("a step ends");
+            let ends = [self.at, self.trace.points()[end]];
+            happened = straining.walk(&mut self.replay, &mut self.rope, step, ends);
+        }
         while self.replay.due(step).is_some() {
             self.replay.play(&mut self.rope);
             happened = true;

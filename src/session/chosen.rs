@@ -53,7 +53,7 @@ fn failed(error: WriteError) -> RunError<SessionError> {
 }
 
 fn steps(path: &Path, study: &Study, state: &State, chosen: &Chosen) -> Result<WholeFile, SessionError> {
-    let mut file = StepWriter::create(path, &study.models()[0], &study.centres())?;
+    let mut file = StepWriter::create(path, &study.models()[0], &study.extras())?;
     origin(study).iter().for_each(|(key, value)| file.note(key, value));
     // One for each anchor that is needed.
     let mut engines: HashMap<*const Model, Cpu> = HashMap::new();

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 
 use super::{OnViolation, Stage, StreamError, Times};
 use crate::engine::{Engine, Job};
-use crate::output::{EventWriter, ResultWriter, StepWriter, WholeFile, commit};
+use crate::output::{EventWriter, Extras, ForceWriter, ResultWriter, StepWriter, WholeFile, commit};
 use crate::read_error::ReadError;
-use crate::rope::{EndsRecord, TraceRecord};
-use crate::scene::{Centre, Model, Scene};
+use crate::rope::{EndsRecord, Friction, TraceRecord};
+use crate::scene::{Model, Scene};
 use crate::trace::{End, EndsTrace, SettledEnds, Trace, TraceReader, read_traces, settle_ends};
 
 /// How many points the free ends of a batch have together at most.
@@ -88,8 +88,10 @@ pub struct EndsFiles<'a> {
     pub out: Option<&'a Path>,
     /// One row a wrap or unwrap, with the end at which it happened.
     pub events: Option<&'a Path>,
-    /// One row a step, and about what turns of the free end are counted.
-    pub steps: Option<(&'a Path, &'a [Centre])>,
+    /// One row a step, and what is told beside the ropes.
+    pub steps: Option<(&'a Path, &'a Extras)>,
+    /// One row for each turn of the ropes at the end, with that friction.
+    pub forces: Option<(&'a Path, Friction)>,
 }
 
 /// How far such a stream is.
@@ -141,6 +143,7 @@ struct Writers {
     out: Option<ResultWriter>,
     events: Option<EventWriter>,
     steps: Option<StepWriter>,
+    forces: Option<ForceWriter>,
 }
 
 impl Writers {
@@ -148,8 +151,9 @@ impl Writers {
         let scene = model.scene();
         let out = files.out.map(|path| ResultWriter::create(path, scene)).transpose()?;
         let events = files.events.map(|path| EventWriter::of_ends(path, scene)).transpose()?;
-        let steps = files.steps.map(|(path, centres)| StepWriter::of_ends(path, model, centres)).transpose()?;
-        Ok(Writers { out, events, steps })
+        let steps = files.steps.map(|(path, extras)| StepWriter::of_ends(path, model, extras)).transpose()?;
+        let forces = files.forces.map(|(path, friction)| ForceWriter::create(path, model, friction)).transpose()?;
+        Ok(Writers { out, events, steps, forces })
     }
 
     fn write(
@@ -161,6 +165,9 @@ impl Writers {
         let start = Instant::now();
         if let Some(steps) = &mut self.steps {
             steps.write_ends(settled, &records)?;
+        }
+        if let Some(forces) = &mut self.forces {
+            forces.write_ends(settled, &records)?;
         }
         if let Some(events) = &mut self.events {
             events.write_ends(scene, &records)?;
@@ -178,8 +185,9 @@ impl Writers {
         let out = self.out.map(ResultWriter::complete).transpose()?;
         let events = self.events.map(EventWriter::complete).transpose()?;
         let steps = self.steps.map(StepWriter::complete).transpose()?;
+        let forces = self.forces.map(ForceWriter::complete).transpose()?;
         let _together = commit();
-        [out, events, steps].into_iter().flatten().try_for_each(WholeFile::finish)?;
+        [out, events, steps, forces].into_iter().flatten().try_for_each(WholeFile::finish)?;
         Ok(start.elapsed())
     }
 }

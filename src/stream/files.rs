@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 
 use super::StreamError;
 use crate::homotopy::Classes;
-use crate::output::{EventWriter, ResultWriter, StepWriter, WholeFile, WriteError, commit};
-use crate::rope::TraceRecord;
-use crate::scene::{Centre, Model};
+use crate::output::{EventWriter, Extras, ForceWriter, ResultWriter, StepWriter, WholeFile, WriteError, commit};
+use crate::rope::{Friction, TraceRecord};
+use crate::scene::Model;
 use crate::trace::SettledTrace;
 
 /// How many records are written at a time; their text is held in memory.
@@ -29,8 +29,10 @@ pub struct Files {
 struct Wanted {
     out: Option<PathBuf>,
     events: Option<PathBuf>,
-    /// And about what turns are counted.
-    steps: Option<(PathBuf, Vec<Centre>)>,
+    /// And what is told beside the ropes.
+    steps: Option<(PathBuf, Extras)>,
+    /// And with which friction.
+    forces: Option<(PathBuf, Friction)>,
     /// What tells the classes of the results, if they have them.
     classes: Option<Arc<Classes>>,
     model: Arc<Model>,
@@ -60,14 +62,23 @@ impl Files {
         notes: Vec<(&'static str, String)>,
     ) -> Self {
         let [out, events] = [out, events].map(|path| path.map(Path::to_owned));
-        Files { wanted: Wanted { out, events, steps: None, classes: None, model: model.clone(), notes }, running: None }
+        let wanted = Wanted { out, events, steps: None, forces: None, classes: None, model: model.clone(), notes };
+        Files { wanted, running: None }
     }
 
-    /// The same with the rope after every step in the file at `steps`, and turns counted about each of `centres`: see
+    /// The same with the rope after every step in the file at `steps`, and what `extras` asks for beside it: see
     /// [`StepWriter`].
     #[must_use]
-    pub fn with_steps(mut self, steps: &Path, centres: Vec<Centre>) -> Self {
-        self.wanted.steps = Some((steps.to_owned(), centres));
+    pub fn with_steps(mut self, steps: &Path, extras: Extras) -> Self {
+        self.wanted.steps = Some((steps.to_owned(), extras));
+        self
+    }
+
+    /// The same with the forces of the ropes at the end, with that friction, in the file at `forces`: see
+    /// [`ForceWriter`].
+    #[must_use]
+    pub fn with_forces(mut self, forces: &Path, friction: Friction) -> Self {
+        self.wanted.forces = Some((forces.to_owned(), friction));
         self
     }
 
@@ -82,6 +93,7 @@ impl Files {
 
     /// Takes the next records, and waits while those before are being written. Their traces, in the same order, are
     /// needed where [every step](Self::with_steps) or [classes](Self::with_classes) are to be written, and may be left
+    /// needed where [every step](Self::with_steps) or [forces](Self::with_forces) are to be written, and may be left
     /// out elsewhere.
     ///
     /// # Errors
@@ -93,6 +105,7 @@ impl Files {
         }
         // Memory is for those who ask.
         let traces = if self.wanted.needs_traces() { traces } else { Vec::new() };
+        let traces = if self.wanted.steps.is_some() || self.wanted.forces.is_some() { traces } else { Vec::new() };
         let running = self.run();
         let sent = running.sender.as_ref().map(|sender| sender.send((traces, records)));
         // The thread ends early for a reason, which it tells.
@@ -146,7 +159,7 @@ impl Drop for Running {
 
 impl Wanted {
     fn is_any(&self) -> bool {
-        self.out.is_some() || self.events.is_some() || self.steps.is_some()
+        self.out.is_some() || self.events.is_some() || self.steps.is_some() || self.forces.is_some()
     }
 
     fn needs_traces(&self) -> bool {
@@ -161,12 +174,15 @@ impl Wanted {
         let create = if classes.is_some() { ResultWriter::create_with_classes } else { ResultWriter::create };
         let mut out = self.out.as_deref().map(|path| create(path, scene)).transpose()?;
         let mut events = self.events.as_deref().map(|path| EventWriter::create(path, scene)).transpose()?;
-        let steps = self.steps.as_ref().map(|(path, centres)| StepWriter::create(path, &self.model, centres));
+        let steps = self.steps.as_ref().map(|(path, extras)| StepWriter::create(path, &self.model, extras));
         let mut steps = steps.transpose()?;
+        let forces = self.forces.as_ref().map(|(path, friction)| ForceWriter::create(path, &self.model, *friction));
+        let mut forces = forces.transpose()?;
         for (key, value) in &self.notes {
             out.iter_mut().for_each(|out| out.note(key, value));
             events.iter_mut().for_each(|events| events.note(key, value));
             steps.iter_mut().for_each(|steps| steps.note(key, value));
+            forces.iter_mut().for_each(|forces| forces.note(key, value));
         }
         for (traces, records) in evaluated {
             let start = Instant::now();
@@ -187,6 +203,7 @@ impl Wanted {
                 || steps.as_mut().map_or(Ok(()), |w| w.write_all(&traces, &records)),
             );
             rows.and(steps)?;
+            forces.as_mut().map_or(Ok(()), |w| w.write_all(&traces, &records))?;
             took += start.elapsed();
         }
         let start = Instant::now();
@@ -194,6 +211,7 @@ impl Wanted {
         let out = out.map(ResultWriter::complete).transpose()?;
         let events = events.map(EventWriter::complete).transpose()?;
         let steps = steps.map(StepWriter::complete).transpose()?;
-        Ok(([out, events, steps].into_iter().flatten().collect(), took + start.elapsed()))
+        let forces = forces.map(ForceWriter::complete).transpose()?;
+        Ok(([out, events, steps, forces].into_iter().flatten().collect(), took + start.elapsed()))
     }
 }

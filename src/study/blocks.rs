@@ -14,6 +14,8 @@ pub(super) struct BlockMeans {
     pub scalars: Vec<f64>,
     /// For each limit, ascending: how many ropes became longer.
     pub longer: Vec<u64>,
+    /// Where there is friction, the means of what it makes: empty without.
+    pub friction: Vec<f64>,
 }
 
 impl State {
@@ -24,7 +26,8 @@ impl State {
         let of = |(block, scalars): (u64, [f64; _])| {
             let longer = (0..limits).map(|limit| counts.survival.longer(block, limit)).collect();
             let traces = study.block(block).count() as u64;
-            (block, BlockMeans { traces, scalars: scalars.to_vec(), longer })
+            let friction = counts.friction.means(block).into_iter().flatten().collect();
+            (block, BlockMeans { traces, scalars: scalars.to_vec(), longer, friction })
         };
         counts.scalars.means().map(of).collect()
     }

@@ -14,6 +14,9 @@ pub struct Differences {
     pub scalars: Vec<MeanDifference>,
     /// Of the shares of ropes that never were longer than a limit, for each limit that both have.
     pub within: Vec<ShareDifference>,
+    /// Where both have friction: of the means of the greatest tension (`tension`) and of the work (`work`).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub friction: Vec<MeanDifference>,
 }
 
 /// What the errors of differences come from.
@@ -30,7 +33,7 @@ pub enum ErrorsFrom {
 /// The difference of two means.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MeanDifference {
-    /// The scalar: `length`, `max_length`, `depth`, `max_depth`, `wraps` or `unwraps`.
+    /// The scalar: `length`, `max_length`, `depth`, `max_depth`, `wraps` or `unwraps`; of friction `tension` or `work`.
     pub name: String,
     /// The difference of the means; `None` where there is nothing to compare.
     pub mean: Option<Estimate>,

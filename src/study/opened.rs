@@ -15,6 +15,7 @@ use super::tally::{Setting, Tallies};
 use super::walk::Walks;
 use crate::example::{BuiltIn, NameError};
 use crate::geometry::{Shown, number};
+use crate::output::Extras;
 use crate::read_file::open;
 use crate::scene::{Centre, Model, Scene, read_scene_with};
 use crate::trace::{SettledTrace, Trace, TraceReader, Walked, settle_owned};
@@ -88,9 +89,10 @@ impl Study {
         &self.tallies.setting.models
     }
 
-    /// About what it is counted how often the free ends go round, where every step is written.
-    pub fn centres(&self) -> Vec<Centre> {
-        centres(&self.plan, self.models()[0].scene()).expect("names were looked up before")
+    /// What is told beside the ropes where every step is written.
+    pub fn extras(&self) -> Extras {
+        let centres = centres(&self.plan, self.models()[0].scene()).expect("names were looked up before");
+        Extras { centres, friction: self.plan.tallies.friction() }
     }
 
     /// A hash of all that the answer depends on: the plan (but for what is written besides the summary), the scene, and

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::blocks::BlockMeans;
 use super::difference::{Differences, ErrorsFrom, MeanDifference, ShareDifference};
 use super::estimate::{Confidence, Estimate};
-use super::tally::scalar_names;
+use super::tally::{FRICTION, scalar_names};
 
 /// What of a study is compared block by block.
 pub(super) struct Blocks<'a> {
@@ -40,10 +40,16 @@ pub(super) fn paired(here: &Blocks<'_>, there: &Blocks<'_>, confidence: &Confide
         let without = |e: Estimate| Estimate { error: None, low: None, high: None, ..e };
         Some(ShareDifference { limit, share: share.map(|e| if says_nothing { without(e) } else { e }) })
     };
+    let frictions = both.iter().all(|(one, other)| !one.friction.is_empty() && !other.friction.is_empty());
+    let friction = |(place, name): (usize, &&'static str)| MeanDifference {
+        name: (*name).to_owned(),
+        mean: of(&|one, other| one.friction[place] - other.friction[place]),
+    };
     Differences {
         errors_from: ErrorsFrom::PairedBlocks,
         scalars: scalar_names().into_iter().enumerate().map(scalar).collect(),
         within: here.limits.iter().enumerate().filter_map(share).collect(),
+        friction: FRICTION.iter().enumerate().filter(|_| frictions && !both.is_empty()).map(friction).collect(),
     }
 }
 
@@ -66,7 +72,7 @@ mod tests {
     use super::*;
 
     fn block(traces: u64, mean: f64, longer: u64) -> BlockMeans {
-        BlockMeans { traces, scalars: vec![mean; 6], longer: vec![longer] }
+        BlockMeans { traces, scalars: vec![mean; 6], longer: vec![longer], friction: Vec::new() }
     }
 
     fn compared(here: &[BlockMeans], there: &[BlockMeans]) -> Differences {

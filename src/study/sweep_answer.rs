@@ -12,7 +12,7 @@ use super::opened::Study;
 use super::paired::{Blocks, paired};
 use super::state::{State, Stopped};
 use super::sweep::shown;
-use super::tally::{Scalar, ShareWithin, TetherAnswer};
+use super::tally::{FrictionAnswer, Scalar, ShareWithin, TetherAnswer};
 
 /// What the studies of a sweep say, side by side. It holds no times and no names of machines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -50,6 +50,9 @@ pub struct PointAnswer {
     /// How its tether held the walks back; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tether: Option<TetherAnswer>,
+    /// What friction makes of the tension in its ropes; `None` unless it is asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<FrictionAnswer>,
     /// By how much the answer differs from that of the point `against`; `None` before the first block of either.
     pub differences: Option<Differences>,
 }
@@ -98,6 +101,7 @@ impl PointAnswer {
             confidence: study.plan().tallies.confidence,
             within: within.collect(),
             tether: summary.tether,
+            friction: summary.friction,
             differences: differences.filter(|_| !is_empty),
             scalars: if is_empty { Vec::new() } else { summary.scalars },
         }
@@ -115,6 +119,7 @@ impl PointAnswer {
             scalars: Vec::new(),
             within: Vec::new(),
             tether: None,
+            friction: None,
             differences: None,
         }
     }
@@ -129,9 +134,15 @@ impl PointAnswer {
         self.within.iter().find(|within| within.limit == limit).map(|within| within.share)
     }
 
-    /// By how much the mean of a scalar differs.
+    /// The share of steps after which friction makes the tension greater than that, if the study has that.
+    pub fn steps_above(&self, tension: f64) -> Option<Estimate> {
+        self.friction.as_ref()?.above.iter().find(|above| above.tension == tension).map(|above| above.share)
+    }
+
+    /// By how much the mean of a scalar differs, or of what friction makes: `tension`, `work`.
     pub fn mean_difference(&self, name: &str) -> Option<Estimate> {
-        self.differences.as_ref()?.scalars.iter().find(|difference| difference.name == name)?.mean
+        let differences = self.differences.as_ref()?;
+        differences.scalars.iter().chain(&differences.friction).find(|difference| difference.name == name)?.mean
     }
 
     /// By how much the share of ropes differs that never were longer than a limit.
@@ -147,6 +158,15 @@ impl SweepAnswer {
         limits.sort_by(f64::total_cmp);
         limits.dedup();
         limits
+    }
+
+    /// The tensions of which any of the studies tells how often they are exceeded, ascending.
+    pub fn tensions(&self) -> Vec<f64> {
+        let above = self.points.iter().flat_map(|point| &point.friction).flat_map(|friction| &friction.above);
+        let mut tensions: Vec<f64> = above.map(|above| above.tension).collect();
+        tensions.sort_by(f64::total_cmp);
+        tensions.dedup();
+        tensions
     }
 
     /// The values of a point in words: `walk.step = 0.2, walk.steps = 100`.

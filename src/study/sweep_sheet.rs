@@ -3,7 +3,7 @@
 use super::estimate::Estimate;
 use super::sweep::shown;
 use super::sweep_answer::{PointAnswer, SweepAnswer};
-use super::tally::{TetherAnswer, scalar_names};
+use super::tally::{FrictionAnswer, TetherAnswer, scalar_names};
 use crate::geometry::number;
 use crate::output::{Column, Sheet};
 
@@ -11,7 +11,7 @@ impl SweepAnswer {
     /// One row a point: its folder, the values of the keys, how many traces and blocks it has, and then of each scalar
     /// the mean with its error and interval, the quantiles with their intervals and the difference of the mean, and of
     /// each limit the share of ropes within it and the difference of that; where there are tethers, how they held the
-    /// walks back. What is not known is null.
+    /// walks back, and where there is friction, what that makes of the tension. What is not known is null.
     pub fn sheet(&self) -> Sheet {
         let mut sheet = Sheet::default();
         sheet.push("point", Column::Text(self.points.iter().map(|point| Some(point.folder.clone())).collect()));
@@ -44,6 +44,16 @@ impl SweepAnswer {
         if self.points.iter().any(|point| point.tether.is_some()) {
             for (name, of) in TETHER {
                 self.push(&mut sheet, name, |point| point.tether.as_ref().and_then(of));
+            }
+        }
+        if self.points.iter().any(|point| point.friction.is_some()) {
+            for (name, of) in FRICTION {
+                self.push(&mut sheet, &format!("{name}_mean"), |point| point.friction.as_ref().map(of));
+                self.push(&mut sheet, &format!("{name}_mean_difference"), |point| point.mean_difference(name));
+            }
+            for tension in self.tensions() {
+                let name = format!("steps_above_tension_{}", number(tension));
+                self.push(&mut sheet, &name, |point| point.steps_above(tension));
             }
         }
         sheet
@@ -88,6 +98,13 @@ const TETHER: [(&str, Told); 3] = [
     ("never_held_back", |tether| Some(tether.never)),
     ("first_held_back_mean", |tether| tether.first),
 ];
+
+/// Something that is told of friction.
+type Strained = fn(&FrictionAnswer) -> Estimate;
+
+/// All of it that every point has.
+const FRICTION: [(&str, Strained); 2] =
+    [("tension", |friction| friction.tension.mean), ("work", |friction| friction.work.mean)];
 
 /// Part of an estimate.
 type Taken = fn(&Estimate) -> Option<f64>;

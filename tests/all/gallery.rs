@@ -1,6 +1,7 @@
 //! The gallery: its files are what the program makes, and what its captions claim is so.
 
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -12,7 +13,7 @@ use tautline::engine::{Engine, Job, Note, Promise, Reference};
 use tautline::picture::Situation;
 use tautline::rope::EventKind::{self, Unwrap, Wrap};
 use tautline::rope::Side::{self, Left, Right};
-use tautline::rope::{Moment, TraceRecord, moments};
+use tautline::rope::{Friction, Moment, Slip, TraceRecord, forces, moments};
 use tautline::scene::Model;
 
 use crate::engine_table::Subject;
@@ -51,6 +52,11 @@ const CLAIMS: &[Claimed] = &[
         ],
         // Not at (4.2, 0.2), the inner corner.
         &[([3.0, 1.5], Right), ([4.2, 1.5], Right), ([6.0, 0.2], Right), ([6.0, -1.0], Right)],
+    ),
+    (
+        "friction",
+        &[(2, Wrap, [4.0, 0.0], Left), (4, Wrap, [4.0, 3.0], Left)],
+        &[([4.0, 0.0], Left), ([4.0, 3.0], Left)],
     ),
     (
         "winding",
@@ -193,6 +199,15 @@ fn what_captions_say_besides_is_so() {
     let moments = steps(&same, &model);
     assert_eq!(moments[2].at, moments[7].at);
     assert!(moments[7].rope.length(moments[7].at) > 2.0 * moments[2].rope.length(moments[2].at));
+
+    // The last leg goes back level with the first: half a turn, and the tension that comes of it.
+    let (friction, model) = (named("friction"), named("friction").model());
+    let last = steps(&friction, &model).pop().unwrap();
+    let turns: Vec<DVec2> = last.rope.taut(last.at).iter().map(|c| c.at).collect();
+    let corners: Vec<DVec2> = [model.anchor()].into_iter().chain(turns).chain([last.at]).collect();
+    let forces = forces(&corners, Friction::new(0.5).unwrap(), Slip::ToFreeEnd);
+    assert_eq!(forces.iter().map(|force| force.angle).sum::<f64>(), PI);
+    assert!(friction.caption.contains(&format!("{:.2} times", forces[1].beyond)));
 
     // Twice round: each corner of the block twice, and the first once more.
     let (winding, model) = (named("winding"), named("winding").model());

@@ -16,6 +16,7 @@ mod extremes;
 mod fast;
 mod filter;
 mod formats;
+mod friction;
 mod gallery;
 mod homotopy;
 mod house;

@@ -162,6 +162,7 @@ fn answer(scene: &Scene) -> Summary {
         histograms: lengths.iter().map(|&(n, m)| histogram(n, m)).collect(),
         survival: [0.2, 0.3, 0.45, 0.6, 0.9].map(curve).into(),
         tether: None,
+        friction: None,
         obstacles: near
             .iter()
             .enumerate()

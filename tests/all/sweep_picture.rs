@@ -33,6 +33,7 @@ fn point(values: Vec<Value>, mean: Option<f64>) -> PointAnswer {
         scalars: mean.into_iter().map(scalar).collect(),
         within: Vec::new(),
         tether: None,
+        friction: None,
         differences: None,
     }
 }

@@ -186,6 +186,27 @@ pub(super) fn table(summary: &Summary, scene: &Scene, run: Option<&RunCost>) -> 
             line(format_args!("  o{:<23} is {at}", letter.obstacle));
         }
     }
+    if let Some(friction) = &summary.friction {
+        line(format_args!(
+            "\nfriction {}, a rope hauled at the free end, for a tension of 1 at the anchor",
+            number(friction.coefficient)
+        ));
+        for (name, scalar) in [("greatest tension", &friction.tension), ("work of the free end", &friction.work)] {
+            let quantile = |share| scalar.quantile(share).map_or(String::new(), |quantile| short(quantile.value));
+            line(format_args!(
+                "{name:24}{:>10}  {:>24}{:>10}{:>10}{:>10}",
+                short(scalar.mean.value),
+                interval(&scalar.mean),
+                quantile(0.5),
+                quantile(0.95),
+                short(scalar.max)
+            ));
+        }
+        for above in &friction.above {
+            let tension = short(above.tension);
+            line(format_args!("  above {tension:18}  {:>7} of the steps", percent(above.share.value)));
+        }
+    }
     for (i, anchor) in summary.anchors.iter().flatten().enumerate() {
         if i == 0 {
             line(format_args!(

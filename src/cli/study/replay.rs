@@ -60,6 +60,9 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             args.trace
         )));
     }
+    if args.every.friction.is_some() && args.every.steps.is_none() {
+        return Err(Failure::input(anyhow!("--friction: say with --steps where to write what it makes")));
+    }
     let [events, points, steps, draw] =
         [&args.events, &args.points, &args.every.steps, &args.draw].map(Option::as_deref);
     let outputs = [("--events", events), ("--points", points), ("--steps", steps), ("--draw", draw)];
@@ -75,7 +78,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     keep_apart(&[("the study's scene.file", scene), ("the study's walk.file", given)], &outputs)?;
     let (trace, model) = (study.trace(args.trace)?, study.model(args.trace));
     [events, points, steps].into_iter().flatten().try_for_each(check_output)?;
-    let centres = args.every.centres(model.scene())?;
+    let extras = args.every.extras(model.scene())?;
     let target = args.draw.as_deref().map(|path| Target::new(path, &args.look)).transpose()?;
     let mut engine: Box<dyn Engine> = match plan.run.precision {
         Precision::Certified => Box::new(Reference::new(model.clone())),
@@ -92,7 +95,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         events.finish()?;
     }
     if let Some(path) = steps {
-        let mut steps = StepWriter::create(path, model, &centres)?;
+        let mut steps = StepWriter::create(path, model, &extras)?;
         steps.write_all(std::slice::from_ref(&trace), std::slice::from_ref(&record))?;
         steps.finish()?;
     }

@@ -34,6 +34,15 @@ pub(super) fn table(answer: &SweepAnswer) -> String {
             (tether.map(|tether| tether.held_back), None, vec![never])
         });
     }
+    if answer.points.iter().any(|point| point.friction.is_some()) {
+        text += "\ngreatest tension with friction, hauled at the free end, for 1 at the anchor\n";
+        let quantile = |point: &PointAnswer, share| point.friction.as_ref()?.tension.quantile(share);
+        text += &lines(answer, &["median", "95 %"], short, |point| {
+            let mean = point.friction.as_ref().map(|friction| friction.tension.mean);
+            let known = [0.5, 0.95].map(|share| quantile(point, share).map_or(NONE.to_owned(), |q| short(q.value)));
+            (mean, point.mean_difference("tension"), known.to_vec())
+        });
+    }
     text
 }
 

@@ -75,6 +75,16 @@ const ALL: &[Situation] = &[
         steps: &[2, 4],
     },
     Situation {
+        name: "friction",
+        title: "Friction",
+        caption: "Round both ends of the wall the rope turns by half a turn in all: with a friction of 0.5 the free \
+                  end then pulls 4.81 times as hard as the anchor.",
+        walls: &[[[4.0, 0.0], [4.0, 3.0]]],
+        anchor: [0.0, 0.0],
+        points: &[[2.0, -1.0], [6.0, -1.5], [6.0, 2.0], [5.5, 4.5], [0.0, 3.0]],
+        steps: &[2, 3, 4],
+    },
+    Situation {
         name: "winding",
         title: "Winding several times",
         caption: "Twice round the block and on: the rope holds its corners once for each time, and their numbers \

@@ -70,6 +70,7 @@ impl AnchorCounts {
             errors_from: ErrorsFrom::Independent,
             scalars: both.map(mean).collect(),
             within: limits.iter().enumerate().map(share).collect(),
+            friction: Vec::new(),
         }
     }
 }

@@ -31,6 +31,14 @@ pub struct TallyPlan {
     /// Whether the answer has that of each anchor too.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub anchors: bool,
+    /// The coefficient of friction between ropes and walls, 0 to 10, if the answer is to say what that makes of the
+    /// tension in them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
+    /// With `friction`: for which tensions it is told how often that at the free end is greater, of a rope that is
+    /// hauled there and has a tension of 1 at its anchor.
+    #[serde(skip_serializing_if = "are_usual_tensions")]
+    pub tensions: Vec<f64>,
 }
 
 /// The quantiles that are given unless told otherwise.
@@ -42,6 +50,13 @@ fn are_usual(quantiles: &[f64]) -> bool {
 
 fn is_zero(number: &u32) -> bool {
     *number == 0
+}
+
+/// The tensions that are told of unless told otherwise.
+const TENSIONS: [f64; 3] = [2.0, 5.0, 10.0];
+
+fn are_usual_tensions(tensions: &[f64]) -> bool {
+    tensions == TENSIONS
 }
 
 impl TallyPlan {
@@ -67,6 +82,8 @@ impl Default for TallyPlan {
             classes: 0,
             by_obstacle: false,
             anchors: false,
+            friction: None,
+            tensions: TENSIONS.to_vec(),
         }
     }
 }

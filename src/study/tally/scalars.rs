@@ -79,7 +79,7 @@ impl Quantity {
 }
 
 /// How many numbers are in each class.
-type Classes = BTreeMap<u64, u64>;
+pub(super) type Classes = BTreeMap<u64, u64>;
 
 /// The class of the number of that rank, ranks counted from 1; the last class for ranks beyond all.
 pub(super) fn of_rank(classes: &Classes, rank: u64) -> Option<u64> {
@@ -182,34 +182,46 @@ impl Tally for Scalars {
 impl Scalars {
     /// What the counts of so many traces say.
     pub(super) fn told(&self, counts: &ScalarCounts, traces: u64, confidence: &Confidence) -> Vec<Scalar> {
-        // The least number below or at which that share of them lies.
-        let rank = |share: f64| ((share * traces as f64).ceil() as u64).max(1);
-        let ends: Vec<_> = self.quantiles.iter().map(|&share| (share, confidence.ranks(share, traces))).collect();
         let scalar = |((quantity, moments), classes): ((&Quantity, Moments), &Classes)| {
-            // A number's class is known, and that none is beyond the extremes.
-            let quantile = |rank: u64| {
-                let ends = of_rank(classes, rank).map_or([0.0; 2], |class| quantity.ends(class));
-                ends.map(|x| x.clamp(moments.min, moments.max))
-            };
-            let estimate = |share: f64, [low, high]: [Option<u64>; 2]| {
-                let [value, above] = quantile(rank(share));
-                Estimate {
-                    value: value + (above - value) / 2.0,
-                    error: None,
-                    low: low.map(|rank| quantile(rank)[0]),
-                    high: high.map(|rank| quantile(rank)[1]),
-                }
-            };
-            Scalar {
-                name: quantity.name.to_owned(),
-                mean: confidence.mean(&moments),
-                deviation: moments.variance().map(f64::sqrt),
-                min: moments.min,
-                max: moments.max,
-                quantiles: ends.iter().map(|&(share, ends)| Quantile { share, value: estimate(share, ends) }).collect(),
-            }
+            let ends = |class| quantity.ends(class);
+            distribution(quantity.name, (&moments, classes), ends, &self.quantiles, (traces, confidence))
         };
         ALL.iter().zip(counts.moments()).zip(&counts.classes).map(scalar).collect()
+    }
+}
+
+/// The distribution of a number over so many traces. `ends` are those between which the numbers of a class lie.
+pub(super) fn distribution(
+    name: &str,
+    (moments, classes): (&Moments, &Classes),
+    ends: impl Fn(u64) -> [f64; 2],
+    shares: &[f64],
+    (traces, confidence): (u64, &Confidence),
+) -> Scalar {
+    // The least number below or at which that share of them lies.
+    let rank = |share: f64| ((share * traces as f64).ceil() as u64).max(1);
+    // A number's class is known, and that none is beyond the extremes.
+    let quantile = |rank: u64| {
+        let ends = of_rank(classes, rank).map_or([0.0; 2], &ends);
+        ends.map(|x| x.clamp(moments.min, moments.max))
+    };
+    let estimate = |share: f64| {
+        let [low, high] = confidence.ranks(share, traces);
+        let [value, above] = quantile(rank(share));
+        Estimate {
+            value: value + (above - value) / 2.0,
+            error: None,
+            low: low.map(|rank| quantile(rank)[0]),
+            high: high.map(|rank| quantile(rank)[1]),
+        }
+    };
+    Scalar {
+        name: name.to_owned(),
+        mean: confidence.mean(moments),
+        deviation: moments.variance().map(f64::sqrt),
+        min: moments.min,
+        max: moments.max,
+        quantiles: shares.iter().map(|&share| Quantile { share, value: estimate(share) }).collect(),
     }
 }
 

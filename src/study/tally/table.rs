@@ -31,6 +31,9 @@ macro_rules! table {
             /// Contacts and turns counted by obstacle, if the study asks for that.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             by_obstacle: Option<tally::ByObstacle> = tally::by_obstacle::Obstacles;
+            /// What friction makes of the tension in ropes; `None` unless `study.tallies.friction` asks for it.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            friction: Option<tally::FrictionAnswer> = tally::friction::Tensions;
             /// The plane.
             map: Option<tally::Map> = tally::map::Cells;
         }

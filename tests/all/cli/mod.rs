@@ -13,6 +13,7 @@ mod ends;
 mod engines;
 mod extremes;
 mod faults;
+mod friction;
 mod newcomer;
 mod outputs;
 mod process;
