@@ -81,10 +81,8 @@ fn report(args: &Args, scene: &Scene, model: Option<&Model>, counts: Option<&Cou
     }
     let mut text = table(&described, &args.input, model);
     if let Some(Counts { traces, steps, crossing, .. }) = counts {
-        text += &format!(
-            "traces  {traces}, {}; {crossing} of the traces cross walls\n",
-            plainly(*steps as u64, "step", "steps")
-        );
+        text +=
+            &format!("traces  {traces}, {}; {crossing} of the traces cross walls\n", plainly(*steps, "step", "steps"));
     }
     if let Some(path) = &args.picture {
         text += &format!("picture {}\n", path.display());

@@ -141,7 +141,7 @@ impl<'a> Entities<'a> {
                 None => {
                     let what = format!(
                         "the file ends after {} without 0, EOF: it is cut off",
-                        plainly(self.line as u64, "line", "lines")
+                        plainly(self.line, "line", "lines")
                     );
                     return Err(Fault::new(Place::line(entity.line), what));
                 }
