@@ -8,7 +8,7 @@ use crate::trace::{SettledEnds, SettledTrace};
 
 /// How many traces engines without a device can make use of at once: enough that all threads end at about the same
 /// time.
-const BATCH: usize = 8192;
+const BATCH: usize = 2048;
 
 /// Turns batches of independent traces into records, for the model that the engine was made for.
 pub trait Engine: Send {
