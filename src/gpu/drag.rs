@@ -74,17 +74,17 @@ struct Sent {
 
 impl DragPass {
     /// The most room that a device has for a pass of at most `lanes` lanes a half, in the [memory](Device::memory) that
-    /// it gives: an eighth of that for fans, at most a quarter for lanes, what is left for points.
+    /// it gives: a quarter of that for fans, at most one for lanes, what is left for points.
     pub fn most(device: &Device, lanes: usize) -> Room {
         let largest = device.largest_buffer() as usize;
         // Fans and points share a buffer, half of all that they take.
         let bytes = device.memory().min(largest.saturating_mul(2));
         let lanes = lanes.min(bytes / 4 / (HALVES * Room::LANE)).min(largest / (STACK * size_of::<Stacked>())).max(1);
-        let left = (bytes / 8 * 7).saturating_sub(lanes * HALVES * Room::LANE);
+        let left = (bytes / 4 * 3).saturating_sub(lanes * HALVES * Room::LANE);
         Room {
             lanes,
             points: (left / (HALVES * Room::POINT) / CHUNK).max(1) * CHUNK,
-            rays: (bytes / 8 / Room::RAY).max(1),
+            rays: (bytes / 4 / Room::RAY).max(1),
         }
     }
 

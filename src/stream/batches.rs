@@ -15,9 +15,9 @@ use crate::trace::{SettledTrace, Trace, TraceReader};
 use crate::trade::Terms;
 
 /// How many points the traces of a batch have together at most. A batch of long traces has fewer of them, so that
-/// memory stays bounded: 64 MB of points for each of the two batches under way: one that is read and checked, one that
-/// is evaluated. Engines that can make use of more traces at once than others get up to eight times as much.
-const POINTS: RangeInclusive<usize> = 1 << 22..=1 << 25;
+/// memory stays bounded: 16 MB of points for each of the two batches under way: one that is read and checked, one that
+/// is evaluated. Engines that can make use of more traces at once than others get up to 32 times as much.
+const POINTS: RangeInclusive<usize> = 1 << 20..=1 << 25;
 
 /// Where traces come from.
 pub enum Source {

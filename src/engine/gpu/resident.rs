@@ -13,7 +13,9 @@ use crate::candidates::{Grid, Lists, Simd};
 use crate::engine::hand::Hand;
 use crate::engine::windows::Windows;
 use crate::engine::{Engine, EngineError, Job, Phase, WINDOW};
-use crate::gpu::{AdapterSummary, CHUNK, DRAG_WGSL, Device, DragPass, GpuError, HALVES, Lane, NOTES, Room, Tuning};
+use crate::gpu::{
+    AdapterKind, AdapterSummary, CHUNK, DRAG_WGSL, Device, DragPass, GpuError, HALVES, Lane, NOTES, Room, Tuning,
+};
 use crate::rope::TraceRecord;
 use crate::scene::{Model, Pivot};
 use crate::trace::{SettledTrace, bounds};
@@ -55,7 +57,13 @@ impl Gpu {
     ///
     /// What the device complains of, or what of its f32 exact ropes cannot rely on.
     pub fn new(device: Device, model: Arc<Model>) -> Result<Self, GpuError> {
-        let tuning = device.tuning();
+        let Tuning { queries, workgroup } = device.tuning();
+        // Enough for a round to be long, and few enough for their state to stay in the caches of the CPU, whose the
+        // device is.
+        let tuning = match device.summary().kind {
+            AdapterKind::Software => Tuning { queries: queries / 8, workgroup },
+            _ => Tuning { queries, workgroup },
+        };
         Self::with(device, Lists::new(model).after(0), tuning, DRAG_WGSL)
     }
 
