@@ -1,8 +1,62 @@
 //! The class of a rope on its way.
 
+use std::collections::VecDeque;
+
+use super::classes::Node;
 use super::{Class, Classes};
-use crate::rope::{Status, TraceRecord};
+use crate::geometry::TracePoint;
+use crate::rope::{EventKind, Status, TraceRecord};
 use crate::trace::SettledTrace;
+
+/// For how many of the last contacts the word up to them is kept.
+const KEPT: usize = 64;
+
+/// A rope under way, with its words up to the last contacts, so that a step costs no more than its last leg.
+struct Way<'a> {
+    classes: &'a Classes,
+    nodes: Vec<Node>,
+    /// Up to each of the last nodes; up to the anchor there is none.
+    words: VecDeque<Class>,
+}
+
+impl Way<'_> {
+    /// A contact has been pushed.
+    fn wrapped(&mut self, end: TracePoint) {
+        let mut word = match self.words.back() {
+            Some(word) => word.clone(),
+            None => self.classes.begin(&self.nodes, end),
+        };
+        self.classes.reach(&mut word, &self.nodes);
+        self.keep(word);
+    }
+
+    /// A contact has been popped.
+    fn unwrapped(&mut self, end: TracePoint) {
+        self.words.pop_back();
+        if self.words.is_empty() && self.nodes.len() > 1 {
+            let mut word = self.classes.begin(&self.nodes, end);
+            for n in 2..=self.nodes.len() {
+                self.classes.reach(&mut word, &self.nodes[..n]);
+                if n + KEPT > self.nodes.len() {
+                    self.keep(word.clone());
+                }
+            }
+        }
+    }
+
+    fn keep(&mut self, word: Class) {
+        self.words.push_back(word);
+        if self.words.len() > KEPT {
+            self.words.pop_front();
+        }
+    }
+
+    fn class(&self, end: TracePoint) -> Class {
+        let mut class = self.words.back().cloned().unwrap_or_else(|| self.classes.begin(&self.nodes, end));
+        self.classes.finish(&mut class, &self.nodes, end);
+        class
+    }
+}
 
 /// A step with which the class of a rope becomes another.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,8 +69,8 @@ pub struct ClassChange {
 
 impl Classes {
     /// The class of a trace's rope after its first step, and after each step after which it is another than after the
-    /// one before; `None` if the trace crosses a wall. Steps that were left out for speed are not looked at. O(events),
-    /// and as [`of`](Self::of) for each step.
+    /// one before; `None` if the trace crosses a wall. Steps that were left out for speed are not looked at. For each
+    /// step and event O(letters + obstacles in the columns over which the rope's last leg goes); memory for 64 words.
     ///
     /// # Panics
     ///
@@ -44,15 +98,19 @@ impl Classes {
         if record.status == Status::Violation {
             return None;
         }
-        let mut nodes = self.tied(std::iter::empty());
+        let mut way = Way { classes: self, nodes: self.tied(std::iter::empty()), words: VecDeque::new() };
         let mut events = record.events.iter().peekable();
         let mut changes: Vec<ClassChange> = Vec::new();
         for point in (0..trace.points().len()).filter(|&point| trace.ends_step(point)) {
-            let step = trace.step(point);
+            let (step, end) = (trace.step(point), trace.point(point));
             while let Some(event) = events.next_if(|event| event.step as usize <= step) {
-                self.play(&mut nodes, event);
+                self.play(&mut way.nodes, event);
+                match event.kind {
+                    EventKind::Wrap => way.wrapped(end),
+                    EventKind::Unwrap => way.unwrapped(end),
+                }
             }
-            let class = self.of_nodes(&nodes, trace.point(point));
+            let class = way.class(end);
             if changes.last().is_none_or(|last| last.class != class) {
                 changes.push(ClassChange { step: step as u64, class });
             }

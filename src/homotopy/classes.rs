@@ -138,29 +138,36 @@ impl Classes {
     }
 
     /// The class of a rope from the anchor, the first of `nodes`, over its contacts to `end`.
-    pub(super) fn of_nodes(&self, nodes: &[Node], end: TracePoint) -> Class {
+    fn of_nodes(&self, nodes: &[Node], end: TracePoint) -> Class {
         let mut class = self.begin(nodes, end);
-        for (i, &(from, side)) in nodes.iter().enumerate() {
-            let next = nodes.get(i + 1);
-            if let (Some(side), Some(obstacle)) = (side, self.cut_at(from)) {
-                let on = next.map_or_else(|| goes_to(from, end), |next| Some(Direction::Towards(next.0)));
-                on.into_iter().for_each(|on| pass(&mut class, obstacle, from, nodes[i - 1].0, on, side));
-            }
-            match next {
-                // The contacts on one leg came together and lie on one side.
-                Some(&(to, side)) => self.leg(&mut class, from, to, |_| side.unwrap_or(Side::Right)),
-                None => {
-                    let side = |v: DVec2| if left_of(from, v, end) { Side::Right } else { Side::Left };
-                    self.leg(&mut class, from, end.at, side);
-                    if let (Some(hair), Some(obstacle), true) = (end.hair, self.cut_at(end.at), end.at != from) {
-                        // It stops before it has passed, so the way round is less than half a turn, and on the side on
-                        // which a rope would pass that leaves the wall end on the other.
-                        arrive(&mut class, obstacle, end.at, from, Direction::Hair(hair), side(end.at));
-                    }
-                }
-            }
-        }
+        (2..=nodes.len()).for_each(|n| self.reach(&mut class, &nodes[..n]));
+        self.finish(&mut class, nodes, end);
         class
+    }
+
+    /// The letters from where the rope comes to the last node but one to where it comes to the last.
+    pub(super) fn reach(&self, class: &mut Class, nodes: &[Node]) {
+        let [.., (from, side), (to, to_side)] = *nodes else { return };
+        if let (Some(side), Some(obstacle)) = (side, self.cut_at(from)) {
+            pass(class, obstacle, from, nodes[nodes.len() - 3].0, Direction::Towards(to), side);
+        }
+        // The contacts on one leg came together and lie on one side.
+        self.leg(class, from, to, |_| to_side.unwrap_or(Side::Right));
+    }
+
+    /// The letters from where the rope comes to the last node to its end.
+    pub(super) fn finish(&self, class: &mut Class, nodes: &[Node], end: TracePoint) {
+        let [.., (from, side)] = *nodes else { return };
+        if let (Some(side), Some(obstacle), Some(on)) = (side, self.cut_at(from), goes_to(from, end)) {
+            pass(class, obstacle, from, nodes[nodes.len() - 2].0, on, side);
+        }
+        let side = |v: DVec2| if left_of(from, v, end) { Side::Right } else { Side::Left };
+        self.leg(class, from, end.at, side);
+        if let (Some(hair), Some(obstacle), true) = (end.hair, self.cut_at(end.at), end.at != from) {
+            // It stops before it has passed, so the way round is less than half a turn, and on the side on which a rope
+            // would pass that leaves the wall end on the other.
+            arrive(class, obstacle, end.at, from, Direction::Hair(hair), side(end.at));
+        }
     }
 
     /// The letters of a straight leg, but for those of the wall ends at its ends. `side` says on which side of it a
@@ -240,7 +247,7 @@ impl Classes {
     }
 
     /// The class of a rope that has only just left the anchor.
-    fn begin(&self, nodes: &[Node], end: TracePoint) -> Class {
+    pub(super) fn begin(&self, nodes: &[Node], end: TracePoint) -> Class {
         let Some(start) = &self.start else { return Class::default() };
         let anchor = self.model.anchor();
         let to = match nodes.get(1) {

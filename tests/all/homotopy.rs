@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{TestError, TestRunner};
 use tautline::engine::{Engine, Funnel, Job, Reference};
 use tautline::geometry::{Turn, between, orient};
-use tautline::homotopy::{Class, Classes};
+use tautline::homotopy::{Class, ClassChange, Classes};
 use tautline::rope::{EventKind, Side};
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
@@ -318,6 +318,15 @@ fn turns_about_a_pillar_are_counted_both_ways() {
         let mut points = corners.repeat(turns);
         points.insert(0, DVec2::ZERO);
         let there = settle(&pillar, &Trace { id: 0, points: points.clone() });
+        // Out and back again: all contacts go, one after the other.
+        let out_and_back = points.iter().chain(points.iter().rev()).copied().collect();
+        let trace = settle(&pillar, &Trace { id: 0, points: out_and_back });
+        let record =
+            Reference::new(pillar.clone()).evaluate(std::slice::from_ref(&trace), &Job::new()).unwrap().remove(0);
+        let changes = Classes::new(&pillar).changes(&trace, &record).unwrap();
+        let power = |change: &ClassChange| change.class.word().first().map_or(0, |letter| letter.1);
+        let expected: Vec<i64> = (0..=turns as i64).chain((0..turns as i64).rev()).collect();
+        assert_eq!(changes.iter().map(power).collect::<Vec<_>>(), expected);
         points.reverse();
         let back = settle(&pillar, &Trace { id: 0, points });
         for (trace, turns) in [(there, turns as i64), (back, -(turns as i64))] {
