@@ -79,7 +79,7 @@ fn a_value_that_is_set_stands_for_the_files() {
         ("walk.stpe=2", &["error: --set: walk.stpe: unknown field `stpe`", "did you mean `step`?"][..]),
         ("wlak.step=2", &["error: --set: wlak: unknown field `wlak`", "did you mean `walk`?"]),
         ("walk.step=-1", &["error: --set: walk.step: -1 is no length of a step"]),
-        ("walk.step=far", &["error: --set: walk.step: invalid type: string \"far\", expected f64"]),
+        ("walk.step=far", &["error: --set: walk.step: must be a number, such as 0.5, and is \"far\""]),
         ("walk.step.x=1", &["error: --set: walk.step: it is no table here, so it has no `x`"]),
         ("walk.step=1e-400", &["--set", "walk.step: 1e-400 is too small"]),
         ("walk.step=[1", &["--set", "walk.step: the value cannot be read as TOML"]),
