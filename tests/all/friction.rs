@@ -4,14 +4,12 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 use glam::DVec2;
-use proptest::prelude::*;
-use proptest::test_runner::{TestError, TestRunner};
 use tautline::engine::{Cpu, Engine, Job, Reference};
 use tautline::rope::{EndsSteps, Friction, RopeStep, Slip, Steps, Strain, TraceRecord, forces, moments, replay, turn};
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle, settle_ends};
 
-use crate::scenes::{KINDS, Recipe, recipe};
+use crate::scenes::{KINDS, on_lawful};
 
 fn at(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
@@ -106,24 +104,7 @@ fn forces_halve_the_angle_and_add_up_to_the_pulls_of_the_ends() {
 /// Runs `test` on random scenes of all kinds, with traces that keep to the rules.
 fn check(touching: bool, test: impl Fn(&Arc<Model>, &Trace)) {
     for kind in KINDS {
-        let default = ProptestConfig::default();
-        let cases = default.cases / 16;
-        let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..default });
-        let result = runner.run(&recipe(kind, touching), |recipe: Recipe| {
-            let model = recipe.model();
-            test(&model, &recipe.trace(&model, 0));
-            Ok(())
-        });
-        if let Err(TestError::Fail(why, recipe)) = &result {
-            let model = recipe.model();
-            let walls: Vec<_> = (0..model.scene().walls().len()).map(|w| model.scene().ends(w)).collect();
-            let points = recipe.trace(&model, 0).points;
-            panic!(
-                "{kind:?}, touching {touching}: {why}\nanchor {}\nwalls {walls:?}\ntrace {points:?}",
-                model.anchor()
-            );
-        }
-        result.unwrap();
+        on_lawful(kind, touching, 16, |model, trace, _| test(model, trace));
     }
 }
 

@@ -7,8 +7,6 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::DVec2;
-use proptest::prelude::*;
-use proptest::test_runner::{TestError, TestRunner};
 use tautline::engine::{Engine, Funnel, Job, Reference};
 use tautline::geometry::{Turn, between, orient};
 use tautline::homotopy::{Class, ClassChange, Classes};
@@ -16,7 +14,7 @@ use tautline::rope::{EventKind, Side};
 use tautline::scene::{Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
 
-use crate::scenes::{KINDS, Kind, recipe};
+use crate::scenes::{KINDS, Kind, on_lawful};
 
 /// How far points are pushed off walls, and how far cuts lie beside the columns of their wall ends: on whole numbers
 /// and their quarters the one is far less than the other, and that far less than anything else.
@@ -126,25 +124,6 @@ fn letters(class: &Class) -> Vec<(u32, i64)> {
     class.word().iter().flat_map(times).collect()
 }
 
-fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Arc<Model>, &Trace, &SettledTrace)) {
-    let default = ProptestConfig::default();
-    let cases = cases * default.cases / 256;
-    let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..default });
-    let result = runner.run(&recipe(kind, touching), |recipe| {
-        let model = recipe.model();
-        let trace = recipe.trace(&model, 0);
-        test(&model, &trace, &settle(&model, &trace));
-        Ok(())
-    });
-    if let Err(TestError::Fail(why, recipe)) = &result {
-        let model = recipe.model();
-        let walls: Vec<_> = (0..model.scene().walls().len()).map(|w| model.scene().ends(w)).collect();
-        let points = recipe.trace(&model, 0).points;
-        panic!("{kind:?}, touching {touching}: {why}\nanchor {}\nwalls {walls:?}\ntrace {points:?}", model.anchor());
-    }
-    result.unwrap();
-}
-
 fn class(model: &Arc<Model>, settled: &SettledTrace) -> Class {
     let record = Reference::new(model.clone()).evaluate(std::slice::from_ref(settled), &Job::new()).unwrap().remove(0);
     Classes::new(model).of_record(settled, &record).unwrap()
@@ -188,7 +167,7 @@ fn ropes_have_the_words_of_the_paths_that_were_dragged() {
     let (seen, anchored) = (Cell::new(0), Cell::new(0));
     for kind in [Kind::Lattice, Kind::Grid, Kind::Boxes] {
         for touching in [false, true] {
-            check(kind, touching, 600, |model, _, settled| {
+            on_lawful(kind, touching, 600, |model, _, settled| {
                 let found = class(model, settled);
                 let kept: Vec<u32> = Classes::new(model).cuts().iter().map(|cut| cut.obstacle).collect();
                 let mut lines = lines(model.scene(), 1e6);
@@ -212,7 +191,7 @@ fn classes_are_the_same_exactly_for_the_same_ropes() {
     let (same, other, places) = (Cell::new(0), Cell::new(0), Cell::new(0));
     for kind in KINDS {
         for touching in [false, true] {
-            check(kind, touching, 30, |model, trace, _| {
+            on_lawful(kind, touching, 30, |model, trace, _| {
                 let n = trace.points.len();
                 let there_and_back = (0..n).chain((0..n - 1).rev()).chain(1..n);
                 let points: Vec<DVec2> = there_and_back.clone().map(|i| trace.points[i]).collect();
@@ -228,8 +207,10 @@ fn classes_are_the_same_exactly_for_the_same_ropes() {
                 // Of the whole trace, step by step: the same as that of the trace that ends there.
                 let whole = settle(model, &Trace { id: 0, points: points.clone() });
                 if whole.violation().is_none() {
-                    let record =
-                        Reference::new(model.clone()).evaluate(&[whole.clone()], &Job::new()).unwrap().remove(0);
+                    let record = Reference::new(model.clone())
+                        .evaluate(std::slice::from_ref(&whole), &Job::new())
+                        .unwrap()
+                        .remove(0);
                     let changes = classes.changes(&whole, &record).unwrap();
                     assert!(changes.windows(2).all(|two| two[0].step < two[1].step && two[0].class != two[1].class));
                     for (cut, record) in cuts.iter().zip(&records) {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::OnceLock;
 
 use proptest::prelude::*;
-use proptest::test_runner::{TestError, TestRunner};
+use proptest::test_runner::TestRunner;
 use tautline::candidates::{Lists, Simd};
 use tautline::engine::{Cpu, Engine, Funnel, GpuWindows, Job, Reference};
 use tautline::gpu::{SWEEP_WGSL, Tuning};
@@ -12,7 +12,7 @@ use tautline::rope::{EventKind, Status, TraceRecord, replay};
 use tautline::scene::Model;
 use tautline::trace::{SettledTrace, Trace, settle};
 
-use crate::scenes::{KINDS, Kind, Recipe, recipe};
+use crate::scenes::{KINDS, Kind, on_lawful, on_random, recipe};
 use crate::support::{gpu_on, software};
 
 fn run(engine: &mut dyn Engine, traces: &[SettledTrace]) -> Vec<TraceRecord> {
@@ -30,36 +30,10 @@ fn ropes(model: &Model, trace: &Trace, record: &TraceRecord) -> Vec<Vec<(u32, &'
 
 /// Runs `test` on random scenes of one kind, with traces that keep to the rules.
 fn check(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Arc<Model>, &Trace, &SettledTrace)) {
-    check_traces(kind, touching, cases, Recipe::trace, |model, trace, settled| {
+    on_lawful(kind, touching, cases, |model, trace, settled| {
         assert_eq!(settled.violation(), None);
         test(model, trace, settled);
     });
-}
-
-fn check_traces(
-    kind: Kind,
-    touching: bool,
-    cases: u32,
-    walk: impl Fn(&Recipe, &Model, u64) -> Trace,
-    test: impl Fn(&Arc<Model>, &Trace, &SettledTrace),
-) {
-    // PROPTEST_CASES=2560 runs ten times as many.
-    let default = ProptestConfig::default();
-    let cases = cases * default.cases / 256;
-    let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..default });
-    let result = runner.run(&recipe(kind, touching), |recipe| {
-        let model = recipe.model();
-        let trace = walk(&recipe, &model, 0);
-        test(&model, &trace, &settle(&model, &trace));
-        Ok(())
-    });
-    if let Err(TestError::Fail(why, recipe)) = &result {
-        let model = recipe.model();
-        let walls: Vec<_> = (0..model.scene().walls().len()).map(|w| model.scene().ends(w)).collect();
-        let points = walk(recipe, &model, 0).points;
-        panic!("{kind:?}, touching {touching}: {why}\nanchor {}\nwalls {walls:?}\ntrace {points:?}", model.anchor());
-    }
-    result.unwrap();
 }
 
 fn reference_agrees_with_funnel(model: &Arc<Model>, trace: &Trace, settled: &SettledTrace) {
@@ -150,22 +124,29 @@ fn gpu_gives_the_references_events() {
 fn lawless_traces_are_lawful_until_they_cross_a_wall() {
     for kind in KINDS {
         for touching in [false, true] {
-            check_traces(kind, touching, 300, Recipe::lawless_trace, |model, trace, settled| {
-                let truth = run(&mut Reference::new(model.clone()), std::slice::from_ref(settled)).remove(0);
-                let Some(violation) = settled.violation() else { return };
-                assert_eq!((truth.status, truth.steps), (Status::Violation, trace.points.len() as u64 - 1));
-                // The step before may pass a wall on another side when the trace does not go on from there.
-                let Some(kept) = violation.step.checked_sub(1).filter(|&k| k > 0) else { return };
-                let start = Trace { id: 0, points: trace.points[..kept].to_vec() };
-                if model.is_on_wall(trace.points[kept - 1]) {
-                    return;
-                }
-                let lawful = settle(model, &start);
-                assert_eq!(lawful.violation(), None);
-                let lawful = run(&mut Reference::new(model.clone()), &[lawful]).remove(0);
-                let same = truth.events.iter().take_while(|e| (e.step as usize) < kept).copied().collect::<Vec<_>>();
-                assert_eq!(lawful.events, same);
-            });
+            on_random(
+                kind,
+                touching,
+                300,
+                |recipe, model| recipe.lawless_trace(model, 0),
+                |model, trace, settled| {
+                    let truth = run(&mut Reference::new(model.clone()), std::slice::from_ref(settled)).remove(0);
+                    let Some(violation) = settled.violation() else { return };
+                    assert_eq!((truth.status, truth.steps), (Status::Violation, trace.points.len() as u64 - 1));
+                    // The step before may pass a wall on another side when the trace does not go on from there.
+                    let Some(kept) = violation.step.checked_sub(1).filter(|&k| k > 0) else { return };
+                    let start = Trace { id: 0, points: trace.points[..kept].to_vec() };
+                    if model.is_on_wall(trace.points[kept - 1]) {
+                        return;
+                    }
+                    let lawful = settle(model, &start);
+                    assert_eq!(lawful.violation(), None);
+                    let lawful = run(&mut Reference::new(model.clone()), &[lawful]).remove(0);
+                    let same =
+                        truth.events.iter().take_while(|e| (e.step as usize) < kept).copied().collect::<Vec<_>>();
+                    assert_eq!(lawful.events, same);
+                },
+            );
         }
     }
 }

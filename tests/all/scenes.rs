@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use glam::DVec2;
 use proptest::prelude::*;
+use proptest::test_runner::{TestError, TestRunner};
 use tautline::scene::{Model, Scene};
-use tautline::trace::{Trace, settle};
+use tautline::trace::{SettledTrace, Trace, settle};
 
 /// What walls a scene is made of, and how the trace moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,6 +62,39 @@ pub(crate) struct Recipe {
     moves: Vec<(i16, i16, Option<u16>)>,
     /// Whether the anchor stands at a wall's end or in its middle.
     anchored: Option<bool>,
+}
+
+/// Runs `test` on so many random scenes of one kind, in each with the trace that `walk` makes of its recipe; shows the
+/// simplest that fails.
+pub(crate) fn on_random(
+    kind: Kind,
+    touching: bool,
+    cases: u32,
+    walk: impl Fn(&Recipe, &Model) -> Trace,
+    test: impl Fn(&Arc<Model>, &Trace, &SettledTrace),
+) {
+    // PROPTEST_CASES=2560 runs ten times as many.
+    let default = ProptestConfig::default();
+    let cases = cases * default.cases / 256;
+    let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..default });
+    let result = runner.run(&recipe(kind, touching), |recipe| {
+        let model = recipe.model();
+        let trace = walk(&recipe, &model);
+        test(&model, &trace, &settle(&model, &trace));
+        Ok(())
+    });
+    if let Err(TestError::Fail(why, recipe)) = &result {
+        let model = recipe.model();
+        let walls: Vec<_> = (0..model.scene().walls().len()).map(|w| model.scene().ends(w)).collect();
+        let points = walk(recipe, &model).points;
+        panic!("{kind:?}, touching {touching}: {why}\nanchor {}\nwalls {walls:?}\ntrace {points:?}", model.anchor());
+    }
+    result.unwrap();
+}
+
+/// As [`on_random`], with traces that keep to the rules.
+pub(crate) fn on_lawful(kind: Kind, touching: bool, cases: u32, test: impl Fn(&Arc<Model>, &Trace, &SettledTrace)) {
+    on_random(kind, touching, cases, |recipe, model| recipe.trace(model, 0), test);
 }
 
 /// Recipes of one kind; `touching` traces go to vertices and to middles of walls often.

@@ -4,8 +4,6 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::DVec2;
-use proptest::prelude::*;
-use proptest::test_runner::{TestError, TestRunner};
 use tautline::engine::{Cpu, Engine, Job, Reference};
 use tautline::geometry::{TracePoint, Turn};
 use tautline::rope::{EventKind, RopeStep, Steps, TraceRecord, replay};
@@ -13,28 +11,14 @@ use tautline::scene::{Centre, Model, Scene};
 use tautline::trace::{SettledTrace, Trace, settle};
 use tautline::trade::Trade;
 
-use crate::scenes::{KINDS, Kind, Recipe, recipe};
+use crate::scenes::{KINDS, Kind, on_lawful};
 
 /// Where all traces touch walls, sooner or later, and points lie far apart.
 const LATTICES: [Kind; 3] = [Kind::Lattice, Kind::Grid, Kind::Boxes];
 
 /// Runs `test` on random scenes of one kind, with traces that keep to the rules.
 fn check(kind: Kind, touching: bool, test: impl Fn(&Arc<Model>, &Trace)) {
-    let default = ProptestConfig::default();
-    let cases = default.cases / 8;
-    let mut runner = TestRunner::new(ProptestConfig { cases, failure_persistence: None, ..default });
-    let result = runner.run(&recipe(kind, touching), |recipe: Recipe| {
-        let model = recipe.model();
-        test(&model, &recipe.trace(&model, 0));
-        Ok(())
-    });
-    if let Err(TestError::Fail(why, recipe)) = &result {
-        let model = recipe.model();
-        let walls: Vec<_> = (0..model.scene().walls().len()).map(|w| model.scene().ends(w)).collect();
-        let points = recipe.trace(&model, 0).points;
-        panic!("{kind:?}, touching {touching}: {why}\nanchor {}\nwalls {walls:?}\ntrace {points:?}", model.anchor());
-    }
-    result.unwrap();
+    on_lawful(kind, touching, 32, |model, trace, _| test(model, trace));
 }
 
 fn record(model: &Arc<Model>, trace: &SettledTrace) -> TraceRecord {

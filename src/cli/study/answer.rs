@@ -10,7 +10,7 @@ use tautline::geometry::number;
 use tautline::picture::sentence;
 use tautline::scene::Scene;
 use tautline::session::{RunCost, RunReport, Session};
-use tautline::study::{AtWalls, Estimate, Stopped, Study, Summary, TetherAnswer, quantity};
+use tautline::study::{AtWalls, Estimate, Scalar, Stopped, Study, Summary, TetherAnswer, quantity};
 
 use crate::cli::failure::Failure;
 use crate::cli::words::{counted, grouped, short};
@@ -113,16 +113,7 @@ pub(super) fn table(summary: &Summary, scene: &Scene, run: Option<&RunCost>) -> 
         "most"
     ));
     for scalar in &summary.scalars {
-        let quantile = |share| scalar.quantile(share).map_or(String::new(), |quantile| short(quantile.value));
-        let name = quantity(&scalar.name);
-        line(format_args!(
-            "{name:24}{:>10}  {:>24}{:>10}{:>10}{:>10}",
-            short(scalar.mean.value),
-            interval(&scalar.mean),
-            quantile(0.5),
-            quantile(0.95),
-            short(scalar.max)
-        ));
+        line(format_args!("{}", figures(&quantity(&scalar.name), scalar)));
     }
     if !summary.survival.is_empty() {
         line(format_args!("\nropes never longer than"));
@@ -192,15 +183,7 @@ pub(super) fn table(summary: &Summary, scene: &Scene, run: Option<&RunCost>) -> 
             number(friction.coefficient)
         ));
         for (name, scalar) in [("greatest tension", &friction.tension), ("work of the free end", &friction.work)] {
-            let quantile = |share| scalar.quantile(share).map_or(String::new(), |quantile| short(quantile.value));
-            line(format_args!(
-                "{name:24}{:>10}  {:>24}{:>10}{:>10}{:>10}",
-                short(scalar.mean.value),
-                interval(&scalar.mean),
-                quantile(0.5),
-                quantile(0.95),
-                short(scalar.max)
-            ));
+            line(format_args!("{}", figures(name, scalar)));
         }
         for above in &friction.above {
             let tension = short(above.tension);
@@ -280,6 +263,19 @@ fn short_share(share: f64) -> String {
 
 fn with_interval(estimate: &Estimate) -> String {
     format!("{} ({})", short(estimate.value), interval(estimate))
+}
+
+/// A scalar's mean with its interval, its median, where 95 % are below, and the most.
+fn figures(name: &str, scalar: &Scalar) -> String {
+    let quantile = |share| scalar.quantile(share).map_or(String::new(), |quantile| short(quantile.value));
+    format!(
+        "{name:24}{:>10}  {:>24}{:>10}{:>10}{:>10}",
+        short(scalar.mean.value),
+        interval(&scalar.mean),
+        quantile(0.5),
+        quantile(0.95),
+        short(scalar.max)
+    )
 }
 
 fn interval(estimate: &Estimate) -> String {
