@@ -92,9 +92,8 @@ impl Files {
     }
 
     /// Takes the next records, and waits while those before are being written. Their traces, in the same order, are
-    /// needed where [every step](Self::with_steps) or [classes](Self::with_classes) are to be written, and may be left
-    /// needed where [every step](Self::with_steps) or [forces](Self::with_forces) are to be written, and may be left
-    /// out elsewhere.
+    /// needed where [every step](Self::with_steps), [forces](Self::with_forces) or [classes](Self::with_classes) are to
+    /// be written, and may be left out elsewhere.
     ///
     /// # Errors
     ///
@@ -105,7 +104,6 @@ impl Files {
         }
         // Memory is for those who ask.
         let traces = if self.wanted.needs_traces() { traces } else { Vec::new() };
-        let traces = if self.wanted.steps.is_some() || self.wanted.forces.is_some() { traces } else { Vec::new() };
         let running = self.run();
         let sent = running.sender.as_ref().map(|sender| sender.send((traces, records)));
         // The thread ends early for a reason, which it tells.
@@ -163,7 +161,7 @@ impl Wanted {
     }
 
     fn needs_traces(&self) -> bool {
-        self.steps.is_some() || (self.classes.is_some() && self.out.is_some())
+        self.steps.is_some() || self.forces.is_some() || (self.classes.is_some() && self.out.is_some())
     }
 
     /// Writes all that comes.
