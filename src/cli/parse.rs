@@ -18,7 +18,7 @@ pub(crate) fn point(text: &str) -> Result<DVec2, String> {
 
 /// A number of bytes.
 pub(crate) fn memory(text: &str) -> Result<usize, String> {
-    let wrong = || "give a number of bytes with a unit, such as 512M or 2G".to_owned();
+    let wrong = || "give a number of bytes from 1 up, with a unit, such as 512M or 2G".to_owned();
     let (number, unit) = text.split_at(text.find(|c: char| !c.is_ascii_digit()).ok_or_else(wrong)?);
     let power = match unit.to_ascii_uppercase().trim_end_matches('B').trim_end_matches('I') {
         "K" => 10,

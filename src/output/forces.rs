@@ -14,7 +14,7 @@ use super::rows::Rows;
 use super::tables::Columns;
 use super::text::number;
 use super::{WholeFile, WriteError};
-use crate::rope::{EndsRecord, Force, Friction, Slip, TraceRecord, forces};
+use crate::rope::{EndsRecord, Force, Friction, Slip, Status, TraceRecord, forces};
 use crate::scene::Model;
 use crate::trace::{End, SettledEnds, SettledTrace};
 
@@ -33,7 +33,7 @@ const NUMBERS: [(&str, Number); 7] = [
 ];
 
 /// Writes the forces of ropes on what they bend round at the end to a file that appears when it is finished: one row a
-/// turn, from the anchor on.
+/// turn, from the anchor on. Traces that cross walls have none: their ropes mean nothing.
 ///
 /// `.jsonl`, `.csv` and `.parquet` have the same columns: `trace`, `vertex`, and what [`Force`] says, for a rope that
 /// is hauled at the free end and has a tension of 1 at the anchor: `x`, `y`, `angle`, `before`, `beyond`, `force_x`,
@@ -106,6 +106,9 @@ impl ForceWriter {
     fn write(&mut self, ropes: &[Last<'_>]) -> Result<(), WriteError> {
         let Self { rows, labels, model, friction } = self;
         let of = |rope: &Last<'_>| -> Vec<Row<'_>> {
+            if rope.record.status == Status::Violation {
+                return Vec::new();
+            }
             let turns = rope.record.wraps.iter().map(|(at, _)| *at);
             let corners: Vec<DVec2> = [rope.ends[0]].into_iter().chain(turns).chain([rope.ends[1]]).collect();
             let row = |force: Force| {

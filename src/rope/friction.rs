@@ -157,7 +157,17 @@ pub fn forces(corners: &[DVec2], friction: Friction, slip: Slip) -> Vec<Force> {
         turned = turned.and(angle);
         let beyond = friction.tension(turned.value(), slip);
         let unit = |to: DVec2| pull(to, at).unwrap_or_default();
-        let force = if angle == 0.0 { DVec2::ZERO } else { unit(prior) * before + unit(next) * beyond };
+        let (to_prior, to_next) = (unit(prior), unit(next));
+        let force = if angle == 0.0 {
+            DVec2::ZERO
+        } else if before.is_finite() && beyond.is_finite() {
+            to_prior * before + to_next * beyond
+        } else {
+            // The tensions' ratio is finite, and tells the way.
+            let way = to_prior + to_next * friction.tension(angle, slip);
+            let infinite = |c: f64| if c == 0.0 { 0.0 } else { c * f64::INFINITY };
+            DVec2::new(infinite(way.x), infinite(way.y))
+        };
         Force { at, angle, before, beyond, force }
     };
     corners.windows(3).map(&mut force).collect()

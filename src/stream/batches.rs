@@ -19,6 +19,10 @@ use crate::trade::Terms;
 /// is evaluated. Engines that can make use of more traces at once than others get up to 32 times as much.
 const POINTS: RangeInclusive<usize> = 1 << 20..=1 << 25;
 
+/// How many traces a batch has at least, if there are so many and not too many points: what lists are made for is the
+/// reach of the first batch, and one that goes further has them made anew.
+const TRACES: usize = 1 << 12;
+
 /// Where traces come from.
 pub enum Source {
     /// A file.
@@ -77,11 +81,11 @@ pub struct Batches {
 }
 
 impl Batches {
-    /// Begins to read batches of at most `traces` traces, and of a bounded number of points. The thread ends with the
-    /// source, with the first error, or when nobody waits any more; it is not waited for then, since reading from a
-    /// pipe may take for ever.
+    /// Begins to read batches of about `traces` traces, or a few thousand, and of a bounded number of points. The thread
+    /// ends with the source, with the first error, or when nobody waits any more; it is not waited for then, since
+    /// reading from a pipe may take for ever.
     pub fn start(source: Source, terms: Terms, traces: usize) -> Self {
-        let size = source.size();
+        let (size, traces) = (source.size(), traces.max(TRACES));
         // Without room in between: a batch that is ready waits in the thread, and the one after it is not read yet.
         let (ready, waiting) = sync_channel(0);
         let thread = spawn(move || prepare(source, &terms, traces, &ready));

@@ -382,6 +382,15 @@ fn tensions_beyond_all_numbers_are_infinite_and_nothing_is_no_number() {
         all.iter().all(|(_, strain)| !strain.work.is_nan() && !strain.tension.is_nan() && strain.turned.is_finite())
     );
     assert_eq!(all.last().unwrap().1.turned, 0.0);
+    // Round a square again and again, forces point into it, however great they are.
+    let square = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
+    let corners: Vec<DVec2> = (0..30).flat_map(|_| square).collect();
+    let felt = forces(&corners, of(10.0), Slip::ToFreeEnd);
+    assert!(felt.last().unwrap().beyond == f64::INFINITY && felt[0].beyond.is_finite());
+    for force in felt {
+        let inwards = at(0.5, 0.5) - force.at;
+        assert!(force.force.x * inwards.x > 0.0 && force.force.y * inwards.y > 0.0, "{force:?}");
+    }
     for bad in [-0.1, 10.5, f64::NAN, f64::INFINITY] {
         let message = Friction::new(bad).unwrap_err().to_string();
         assert!(message.ends_with("is no coefficient of friction; give a number from 0 to 10"), "{message}");

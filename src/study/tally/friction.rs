@@ -93,6 +93,9 @@ impl Tally for Tensions {
                 "tallies.tensions: {} is below 1, which is that of the anchor, or no number",
                 number(*bad)
             ))),
+            None if options.friction.is_none() && options.tensions != TallyPlan::default().tensions => {
+                Err(PlanError::new("tallies.tensions goes with tallies.friction, which is not given".to_owned()))
+            }
             None => Ok(()),
         }
     }

@@ -166,6 +166,7 @@ fn what_is_no_coefficient_is_refused() {
         &["tallies.friction: -0.5 is no coefficient of friction"],
     );
     folder.refused(2, &format!("{run} tallies.tensions=[0.9]"), &["tallies.tensions: 0.9 is below 1"]);
+    folder.refused(2, &format!("{run} tallies.tensions=[3.0]"), &["tallies.tensions goes with tallies.friction"]);
 }
 
 const STUDY: &str = "[scene]\nbuilt_in = \"rooms\"\nanchor = { sample = 2 }\n\

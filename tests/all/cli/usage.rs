@@ -48,7 +48,7 @@ fn unknown_arguments_are_answered_with_the_known_ones() {
     );
     folder.refused(2, &format!("{EVAL} --engine cpu --gpu-memory 1G"), &["--gpu-memory goes with --engine gpu"]);
     for size in ["0M", "12", "M", "1.5G", "12parsecs", "99999999999999999999T"] {
-        let fault = [size, "--gpu-memory", "a number of bytes with a unit, such as 512M or 2G"];
+        let fault = [size, "--gpu-memory", "a number of bytes from 1 up, with a unit, such as 512M or 2G"];
         folder.refused(2, &format!("{EVAL} --engine gpu --gpu-memory {size}"), &fault);
     }
     for engine in ["cpu", "reference", "funnel", "note"] {
