@@ -81,9 +81,9 @@ pub struct Batches {
 }
 
 impl Batches {
-    /// Begins to read batches of about `traces` traces, or a few thousand, and of a bounded number of points. The thread
-    /// ends with the source, with the first error, or when nobody waits any more; it is not waited for then, since
-    /// reading from a pipe may take for ever.
+    /// Begins to read batches of about `traces` traces, or a few thousand, and of a bounded number of points. The
+    /// thread ends with the source, with the first error, or when nobody waits any more; it is not waited for then,
+    /// since reading from a pipe may take for ever.
     pub fn start(source: Source, terms: Terms, traces: usize) -> Self {
         let (size, traces) = (source.size(), traces.max(TRACES));
         // Without room in between: a batch that is ready waits in the thread, and the one after it is not read yet.
