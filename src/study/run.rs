@@ -51,7 +51,7 @@ enum Tallied {
 ///
 /// # Errors
 ///
-/// What the traces, the engines or the caller say; [`EngineError::Stopped`] when the job was stopped. Traces that were
+/// What the traces, the engines or the caller say; `EngineError::Stopped` when the job was stopped. Traces that were
 /// not finished by then are not in the state.
 ///
 /// # Panics

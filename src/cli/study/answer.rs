@@ -113,7 +113,7 @@ pub(super) fn table(summary: &Summary, scene: &Scene, run: Option<&RunCost>) -> 
         "most"
     ));
     for scalar in &summary.scalars {
-        line(format_args!("{}", figures(&quantity(&scalar.name), scalar)));
+        line(format_args!("{}", figures(quantity(&scalar.name), scalar)));
     }
     if !summary.survival.is_empty() {
         line(format_args!("\nropes never longer than"));
