@@ -82,7 +82,7 @@ if [ "$(uname)" = Linux ]; then
     # scenes, are left to lavapipe.
     VK_DRIVER_FILES="$driver" VK_ICD_FILENAMES="$driver" TAUTLINE_TEST_ADAPTER=SwiftShader cargo test --release --test all -- \
         arithmetic:: batch:: cli::adapters:: cli::engines:: decide:: shader:: \
-        drag::a_device drag::most drag::no_sign drag::pieces drag::ropes drag::traces \
+        drag::a_device drag::most drag::no_sign drag::pieces drag::ropes drag::traces drag::walls \
         engine_table::golden engine_table::what_suits engine_table::windows engine_table::forgetting engine_table::a_stopped \
         fast::a_contact fast::a_fast_engine fast::lists fast::no_trace fast::points \
         filter::devices filter::no_walk filter::without rays::
