@@ -192,14 +192,14 @@ if [ "$(id -u)" -eq 0 ] && has_slurm >/dev/null && begin_slurm >"$work/slurm.beg
     sed -i 's/--stop-after 60s/--stop-after 3s/' "$work/stops.script"
     write slurm long lost 3
     bash "$work/array.script" >/dev/null
-    wait_for 60 over || true
+    wait_for 300 over || true
     same "Slurm, an array and its merge" array/all short
     write slurm sweep swept 4
     bash "$work/swept.script" >/dev/null
-    wait_for 60 over || true
+    wait_for 300 over || true
     same_sweep "Slurm, a sweep" swept/all sweep
     bash "$work/stops.script" >/dev/null
-    wait_for 120 over || true
+    wait_for 300 over || true
     same_sweep "Slurm, a sweep whose points stop by their rule" stops/all rules
     bash "$work/lost.script" >/dev/null
     bash "$work/limit.script" >/dev/null
@@ -210,7 +210,7 @@ if [ "$(id -u)" -eq 0 ] && has_slurm >/dev/null && begin_slurm >"$work/slurm.beg
     kill -9 "$(cat "$work/slurmd.$node.pid")"
     wait_for 45 bash -c "sinfo -h -N -o '%N %T' | grep -q '$node down'" || say "the node is not noticed as down"
     slurmd -N "$node"
-    wait_for 150 over || { say "still in the queue:"; squeue; }
+    wait_for 900 over || { say "still in the queue:"; squeue; }
     same "Slurm, a time limit and what is put back" limit/all long
     grep -q 'are saved: go on' "$work"/limit/part-*.log || { failed=$((failed + 1)); say "FAILED: no part was stopped in time"; }
     same "Slurm, a node that is killed" lost/all long
