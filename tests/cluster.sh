@@ -68,7 +68,8 @@ same_sweep() { # same_sweep CASE FOLDER TRUTH
 }
 spared() { # spared CASE: that its parts have not done all blocks
     local told
-    told=$("$TAUTLINE" study status "$work/$1"/part-*/ | sed -n '1s/.*: \([0-9]*\) of \([0-9]*\) blocks done.*/\1 \2/p')
+    # Numbers above a thousand have commas.
+    told=$("$TAUTLINE" study status "$work/$1"/part-*/ | tr -d , | sed -n '1s/.*: \([0-9]*\) of \([0-9]*\) blocks done.*/\1 \2/p')
     if [ "${told% *}" -lt "${told#* }" ]; then
         say "${told% *} of ${told#* } blocks were done for it"
     else
