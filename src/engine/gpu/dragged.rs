@@ -165,7 +165,7 @@ impl<'a> Slot<'a> {
 
     /// What its rope turns about.
     pub(super) fn pivot(&self, model: &Model) -> Pivot {
-        model.pivot(self.windows.progress.rope.contacts().last().map(|c| c.vertex))
+        self.windows.pivot(model)
     }
 
     /// Takes the trace as far as the device took it, and a bit further where that was not certain of what comes next.
@@ -267,6 +267,10 @@ impl<'a> Slot<'a> {
         let list = hand.list(pivot, f64::INFINITY, job).ok_or(WINDOW)?;
         let fan = list.fan(model, rope.pivot()).filter(|fan| grid.tells(fan)).ok_or(WINDOW)?;
         let low = fan.locate(trace.points()[progress.at] - rope.pivot()).ok_or(LEGS_OF_DOUBT)?;
+        let way_low = contacts.last().map_or(UNKNOWN, |contact| {
+            let (ray, on_it) = fan.goes_on(model, rope.prior(), rope.pivot());
+            if on_it && contact.side == Side::Left { fan.before(ray) as u32 } else { ray as u32 }
+        });
         // The device has the lower ones that are as they were.
         let lowest = self.lane.deeper as usize;
         let kept = self.noted.map_or(0, |noted| progress.fewest(noted, lowest + self.lane.depth as usize));
@@ -289,13 +293,6 @@ impl<'a> Slot<'a> {
             self.stack.push(Stacked { vertex: contact.vertex | side, ray: ray as u32, way: grid.way(way) });
         }
         self.stack.reverse();
-        // The list that it came along may have been forgotten since.
-        let list = hand.list(pivot, f64::INFINITY, job).ok_or(WINDOW)?;
-        let fan = list.fan(model, rope.pivot()).ok_or(WINDOW)?;
-        let way_low = contacts.last().map_or(UNKNOWN, |contact| {
-            let (ray, on_it) = fan.goes_on(model, rope.prior(), rope.pivot());
-            if on_it && contact.side == Side::Left { fan.before(ray) as u32 } else { ray as u32 }
-        });
         let back = |c: &Contact| if c.side == Side::Right { 1.0 } else { -1.0 };
         (self.below, self.noted) = (below, Some(progress.events()));
         self.lane = Lane {
